@@ -1,0 +1,1 @@
+"""Machines that ship with prs-model, one folder each."""
