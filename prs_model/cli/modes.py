@@ -1,0 +1,100 @@
+"""``prs-model modes``: natural frequencies and mode characters at one pose."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from ..machine import load_machine
+from .values import assignment, pose_from, settings_from
+
+NAME = "modes"
+HELP = "natural frequencies, mode characters and energies at one pose"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The machine, the pose, and what to make of it."""
+    parser.add_argument("machine", help="installed name, machine.yaml or its folder")
+    parser.add_argument(
+        "--pose",
+        nargs="+",
+        type=assignment,
+        default=[],
+        metavar="NAME=VALUE",
+        help="pose coordinates such as nutation=10deg z=1275mm (bare numbers in m and rad; default: the reference pose)",
+    )
+    parser.add_argument("-n", "--count", type=_positive, default=8, help="how many modes (default 8)")
+    parser.add_argument(
+        "--set",
+        dest="settings",
+        action="append",
+        type=assignment,
+        default=[],
+        metavar="PATH=VALUE",
+        help="change an entry of the description, such as bodies.rod.modes=5 (may be repeated)",
+    )
+    parser.add_argument("--picture", type=Path, metavar="FILE", help="draw the mode shapes (.png, .svg or .pdf)")
+
+
+def run(options: argparse.Namespace) -> dict[str, Any]:
+    """Solve, and draw where asked."""
+    machine = load_machine(options.machine)
+    if options.settings:
+        machine = machine.replace(settings_from(options.settings))
+    if options.picture is not None:
+        from ..modes.picture import check_picture_file
+
+        check_picture_file(options.picture)
+    configuration = machine.configuration(**pose_from(options.pose, machine.kinematics.task.coordinates))
+    modes = machine.assemble(configuration).modes(options.count)
+    if options.picture is not None:
+        from ..modes.picture import draw_modes
+
+        draw_modes(modes, options.picture, title=machine.description.file.title or machine.name)
+    kinetic, strain = modes.kinetic_energy(), modes.strain_energy()
+    return {
+        "machine": machine.name,
+        "pose": {name: float(value) for name, value in configuration.pose.items()},
+        "pose_units": {
+            name: "rad" if dimension.angle else "m" for name, dimension in machine.kinematics.task.coordinates.items()
+        },
+        "coordinates": modes.system.size,
+        "frequencies_hz": [float(f) for f in modes.frequencies],
+        "modes": [
+            {
+                "number": k + 1,
+                "frequency_hz": float(modes.frequencies[k]),
+                "character": str(character),
+                "kinetic_energy": {name: float(share[k]) for name, share in kinetic.items()},
+                "strain_energy": {name: float(share[k]) for name, share in strain.items()},
+            }
+            for k, character in enumerate(modes.characters())
+        ],
+        "picture": None if options.picture is None else str(options.picture),
+    }
+
+
+def show(outcome: dict[str, Any]) -> str:
+    """A table of modes under a line that says where."""
+    units = outcome["pose_units"]
+    pose = ", ".join(f"{name} {_readable(value, units[name])}" for name, value in outcome["pose"].items())
+    lines = [f"{outcome['machine']} at {pose} ({outcome['coordinates']} coordinates)", "", "mode  frequency/Hz  character (share of kinetic energy)"]
+    lines += [f"{m['number']:>4}  {m['frequency_hz']:>12.3f}  {m['character']}" for m in outcome["modes"]]
+    if outcome["picture"]:
+        lines += ["", f"mode shapes drawn in {outcome['picture']}"]
+    return "\n".join(lines)
+
+
+def _readable(value: float, unit: str) -> str:
+    return f"{value * 57.29577951308232:.4g} deg" if unit == "rad" else f"{value * 1e3:.6g} mm"
+
+
+def _positive(text: str) -> int:
+    try:
+        value = int(text)
+    except ValueError:
+        value = 0
+    if value < 1:
+        raise argparse.ArgumentTypeError(f"found '{text}', expected a whole number above zero")
+    return value

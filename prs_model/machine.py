@@ -1,0 +1,98 @@
+"""A machine: its description, and everything that is built from it once and used at many poses."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from . import plugins
+from .description import MachineDescription, load_description, replaced
+from .errors import PrsError
+
+if TYPE_CHECKING:
+    from .kinematics import Configuration, Kinematics
+    from .modes import Modes
+    from .reduction import SuperElement, TravellingElement
+    from .synthesis import System
+
+
+@dataclass(frozen=True)
+class Machine:
+    """A parallel kinematic machine as described; immutable. Parts and kinematics are made when first needed."""
+
+    description: MachineDescription
+
+    @property
+    def name(self) -> str:
+        return self.description.file.name
+
+    @property
+    def pose_names(self) -> tuple[str, ...]:
+        """Names of the pose coordinates, in the order of the task."""
+        return self.kinematics.pose_names
+
+    @property
+    def reference_pose(self) -> Mapping[str, float]:
+        """The pose of the stored reference configuration [m, rad]."""
+        return self.description.reference_pose
+
+    @cached_property
+    def kinematics(self) -> Kinematics:
+        """Closed loops of the machine, solved on Pinocchio's tree."""
+        from .kinematics import Kinematics
+
+        return Kinematics(self.description)
+
+    @cached_property
+    def parts(self) -> Mapping[str, SuperElement | TravellingElement]:
+        """The super-element of every body, constant in its body frame."""
+        from .reduction import build_part
+
+        file, folder = self.description.file, self.description.folder
+        return {name: build_part(name, body, file.reduction, folder) for name, body in self.description.bodies.items()}
+
+    def configuration(self, **pose: float) -> Configuration:
+        """The configuration at a pose [m, rad]; coordinates left out take their reference values.
+
+        Raises UnreachablePoseError naming the joint, and PrsError for a coordinate the task does not have.
+        """
+        wrong = [name for name in pose if name not in self.pose_names]
+        if wrong:
+            raise plugins.unknown("pose coordinate", wrong[0], list(self.pose_names))
+        return self.kinematics.solve({**self.reference_pose, **pose})
+
+    def assemble(self, configuration: Configuration | None = None) -> System:
+        """The synthesised system in a configuration (default: the reference)."""
+        from .synthesis import assemble
+
+        return assemble(self.description, self.parts, configuration or self.configuration())
+
+    def modes(self, count: int = 8, **pose: float) -> Modes:
+        """The lowest natural modes at a pose."""
+        return self.assemble(self.configuration(**pose)).modes(count)
+
+    def replace(self, changes: Mapping[str, object]) -> Machine:
+        """A new machine with entries of its description changed, such as ``{"bodies.rod.modes": 5}``.
+
+        Paths are those of machine.yaml as written, or of one instance (``bodies.rod_2.modes``); values are in the
+        units of the file. Raises DescriptionError as loading does.
+        """
+        return Machine(replaced(self.description, changes))
+
+
+def load_machine(name_or_path: str | Path) -> Machine:
+    """A machine by the name it is installed under, or by the path of a machine.yaml or its folder.
+
+    Raises UnknownNameError listing the known names, or DescriptionError listing everything wrong with the files.
+    """
+    if str(name_or_path) in plugins.list_machines():
+        return Machine(load_description(plugins.machine_folder(str(name_or_path))))
+    path = Path(name_or_path)
+    if path.exists():
+        return Machine(load_description(path))
+    if len(path.parts) > 1 or path.suffix in {".yaml", ".yml"}:
+        raise PrsError(f"{path}: no such file or folder; expected a machine.yaml, its folder, or an installed machine")
+    raise plugins.unknown("machine", str(name_or_path), list(plugins.list_machines()))

@@ -1,0 +1,105 @@
+"""The character of a mode in words: which bodies move, along or about what, in phase or not."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import NDArray
+
+from ..synthesis.system import System
+
+FloatArray = NDArray[np.float64]
+
+_OUTPUT_AXES = ("along u", "along v", "along w", "about u", "about v", "about w")
+_OWN_AXES = tuple(f"{word} their {axis}" for word in ("along", "about") for axis in "xyz")
+_RIGID_SHARE = 0.5
+_NAMED_SHARE = 0.1
+_MOVING_SHARE = 0.25
+
+
+@dataclass(frozen=True)
+class Character:
+    """The group of like bodies with most kinetic energy, how it moves, and the kinetic share of each group."""
+
+    group: str
+    motion: str
+    shares: Mapping[str, float]
+
+    def __str__(self) -> str:
+        others = [f"{name} {share:.0%}" for name, share in self.shares.items() if name != self.group]
+        return f"{self.group} {self.motion} ({self.shares[self.group]:.0%})" + "".join(f", {o}" for o in others)
+
+
+def characters(system: System, shapes: FloatArray) -> tuple[Character, ...]:
+    """One Character for each column of `shapes` (n, k)."""
+    groups: dict[str, list[str]] = {}
+    for body in system.elements:
+        groups.setdefault(system.stems.get(body, body), []).append(body)
+    motions = {body: _body_motion(system, body, shapes) for body in system.elements}
+    return tuple(_character(groups, motions, k) for k in range(shapes.shape[1]))
+
+
+@dataclass(frozen=True)
+class _BodyMotion:
+    """Twice the kinetic energy (k,) of a body in each mode, and its signed square root (6, k) in each rigid motion
+    about the mass centre, along the axes of the output frame and of the body."""
+
+    energy: FloatArray
+    output: FloatArray
+    own: FloatArray
+
+    def is_rigid(self, mode: int) -> bool:
+        return float((self.own[:, mode] ** 2).sum()) >= _RIGID_SHARE * float(self.energy[mode])
+
+
+def _body_motion(system: System, body: str, shapes: FloatArray) -> _BodyMotion:
+    element = system.elements[body]
+    u = system.expansion[system.blocks[body]] @ shapes
+    momentum = element.mass @ u
+    energy = np.einsum("ik,ik->k", u, momentum)
+    if element.grounded:
+        return _BodyMotion(energy, np.zeros((6, len(energy))), np.zeros((6, len(energy))))
+    centre = pin.SE3(np.eye(3), element.mass_properties().centre)
+    rigid = element.rigid_body_modes() @ np.asarray(centre.toActionMatrix())
+    inertia = rigid.T @ element.mass @ rigid
+    twist = np.linalg.lstsq(inertia, rigid.T @ momentum, rcond=1e-12)[0]
+    turn = system.output_rotation.T @ system.placements[body].rotation
+    return _BodyMotion(energy, _by_axis(twist, inertia, turn), _by_axis(twist, inertia, np.eye(3)))
+
+
+def _by_axis(twist: FloatArray, inertia: FloatArray, turn: FloatArray) -> FloatArray:
+    axes = np.kron(np.eye(2), turn)
+    diagonal = np.diag(axes @ inertia @ axes.T)
+    return np.asarray(np.sqrt(np.maximum(diagonal, 0.0))[:, None] * (axes @ twist))
+
+
+def _character(groups: Mapping[str, Sequence[str]], motions: Mapping[str, _BodyMotion], mode: int) -> Character:
+    energy = {group: float(sum(motions[body].energy[mode] for body in bodies)) for group, bodies in groups.items()}
+    total = sum(energy.values())
+    ranked = sorted(energy, key=lambda group: -energy[group])
+    shares = {group: energy[group] / total for group in ranked if energy[group] > _NAMED_SHARE * total}
+    bodies = groups[ranked[0]]
+    words = _alone(motions[bodies[0]], mode) if len(bodies) == 1 else _together(bodies, ranked[0], motions, mode)
+    return Character(ranked[0], words, shares)
+
+
+def _alone(motion: _BodyMotion, mode: int) -> str:
+    if not motion.is_rigid(mode):
+        return "deforming"
+    return _OUTPUT_AXES[int(np.argmax(np.abs(motion.output[:, mode])))]
+
+
+def _together(bodies: Sequence[str], stem: str, motions: Mapping[str, _BodyMotion], mode: int) -> str:
+    energy = np.array([motions[body].energy[mode] for body in bodies])
+    moving = [body for body, share in zip(bodies, energy / energy.max(), strict=True) if share > _MOVING_SHARE]
+    numbers = " ".join(body.removeprefix(stem).lstrip("_") for body in moving)
+    which = "" if len(moving) == len(bodies) else f"{numbers} "
+    if not all(motions[body].is_rigid(mode) for body in moving):
+        return f"{which}deforming"
+    axis = int(np.argmax(sum(motions[body].own[:, mode] ** 2 for body in moving)))
+    signs = {float(np.sign(motions[body].own[axis, mode])) for body in moving}
+    phase = "" if len(moving) == 1 else " in phase" if len(signs) == 1 else " out of phase"
+    return f"{which}{_OWN_AXES[axis]}{phase}"

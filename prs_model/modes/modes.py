@@ -1,0 +1,79 @@
+"""Natural modes of a system and where their energy sits."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import PrsError
+from ..synthesis.system import System
+from .character import Character, characters
+from .eigen import lowest_modes
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Modes:
+    """Natural frequencies [Hz] ascending and mass-normalised shapes (n, k) on the system's coordinates."""
+
+    system: System
+    eigenvalues: FloatArray
+    shapes: FloatArray
+
+    @property
+    def frequencies(self) -> FloatArray:
+        """(k,) [Hz]; zero for rigid-body modes."""
+        return np.asarray(np.sqrt(np.maximum(self.eigenvalues, 0.0)) / (2.0 * np.pi))
+
+    @property
+    def output_shapes(self) -> FloatArray:
+        """(6, k): motion of the end-reference point in the output frame, translations first."""
+        return self.system.output @ self.shapes
+
+    def body_shapes(self, body: str) -> FloatArray:
+        """(m, k): the shapes on one body's own coordinates, in its body frame."""
+        return self.system.expansion[self.system.blocks[body]] @ self.shapes
+
+    def kinetic_energy(self) -> dict[str, FloatArray]:
+        """Share (k,) of each mode's kinetic energy in each body; the shares of a mode sum to one (eq. 22)."""
+        return _shares({name: _quadratic(self.body_shapes(name), e.mass) for name, e in self.system.elements.items()})
+
+    def strain_energy(self) -> dict[str, FloatArray]:
+        """Share (k,) of each mode's strain energy in each body and each joint; the shares of a mode sum to one.
+
+        Rigid-body modes have none: their shares are zero.
+        """
+        bodies = {name: _quadratic(self.body_shapes(name), e.stiffness) for name, e in self.system.elements.items()}
+        return _shares(bodies | self._joint_energy())
+
+    def characters(self) -> tuple[Character, ...]:
+        """What moves in each mode, and along or about what."""
+        return characters(self.system, self.shapes)
+
+    def _joint_energy(self) -> Mapping[str, FloatArray]:
+        energy: dict[str, FloatArray] = {}
+        for spring in self.system.springs:
+            strain = spring.displacement @ (self.system.expansion[spring.rows] @ self.shapes)
+            energy[spring.joint] = energy.get(spring.joint, 0.0) + _quadratic(strain, spring.stiffness)
+        return energy
+
+
+def modes_of(system: System, count: int) -> Modes:
+    """The lowest `count` modes of a system. Raises PrsError when `count` is not at least one."""
+    if count < 1:
+        raise PrsError(f"found {count} modes asked for, expected at least 1")
+    return Modes(system, *lowest_modes(system.mass, system.stiffness, count))
+
+
+def _quadratic(shapes: FloatArray, matrix: FloatArray) -> FloatArray:
+    return np.asarray(np.einsum("ik,ij,jk->k", shapes, matrix, shapes, optimize=True))
+
+
+def _shares(energy: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
+    total = np.asarray(sum(energy.values()))
+    positive = total > 0
+    return {name: np.where(positive, part / np.where(positive, total, 1.0), 0.0) for name, part in energy.items()}
