@@ -82,6 +82,4 @@ class MissingExtraError(PrsError):
 
     def __init__(self, package: str, extra: str, purpose: str):
         self.package, self.extra = package, extra
-        super().__init__(
-            f"{purpose} needs the package '{package}': install it with pip install 'prs-model[{extra}]'"
-        )
+        super().__init__(f"{purpose} needs the package '{package}': install it with pip install 'prs-model[{extra}]'")

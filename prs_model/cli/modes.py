@@ -22,7 +22,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=assignment,
         default=[],
         metavar="NAME=VALUE",
-        help="pose coordinates such as nutation=10deg z=1275mm (bare numbers in m and rad; default: the reference pose)",
+        help="such as nutation=10deg z=1275mm; bare numbers are m and rad; default: the reference pose",
     )
     parser.add_argument("-n", "--count", type=_positive, default=8, help="how many modes (default 8)")
     parser.add_argument(
@@ -79,7 +79,11 @@ def show(outcome: dict[str, Any]) -> str:
     """A table of modes under a line that says where."""
     units = outcome["pose_units"]
     pose = ", ".join(f"{name} {_readable(value, units[name])}" for name, value in outcome["pose"].items())
-    lines = [f"{outcome['machine']} at {pose} ({outcome['coordinates']} coordinates)", "", "mode  frequency/Hz  character (share of kinetic energy)"]
+    lines = [
+        f"{outcome['machine']} at {pose} ({outcome['coordinates']} coordinates)",
+        "",
+        "mode  frequency/Hz  character (share of kinetic energy)",
+    ]
     lines += [f"{m['number']:>4}  {m['frequency_hz']:>12.3f}  {m['character']}" for m in outcome["modes"]]
     if outcome["picture"]:
         lines += ["", f"mode shapes drawn in {outcome['picture']}"]

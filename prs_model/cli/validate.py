@@ -34,7 +34,9 @@ def run(options: argparse.Namespace) -> dict[str, Any]:
 def show(outcome: dict[str, Any]) -> str:
     """A few lines about a sound machine."""
     lines = [f"{outcome['machine']}: valid", f"  {outcome['title']}" if outcome["title"] else ""]
-    lines += [f"  {len(outcome['bodies'])} bodies, {len(outcome['joints'])} joints, {outcome['coordinates']} coordinates"]
+    lines += [
+        f"  {len(outcome['bodies'])} bodies, {len(outcome['joints'])} joints, {outcome['coordinates']} coordinates"
+    ]
     lines += [f"  {name:<14} {mass}" for name, mass in outcome["bodies"].items()]
     return "\n".join(line for line in lines if line)
 

@@ -47,7 +47,9 @@ def settings_from(assignments: Sequence[tuple[str, str]]) -> dict[str, object]:
 def _number(name: str, text: str, dimension: Dimension | None) -> float:
     match = _NUMBER.fullmatch(text.strip())
     if not match or not isfinite(float(match["number"])):
-        raise PrsError(f"--pose {name}: found '{text}', expected a number with or without a unit, such as 10deg or 1275mm")
+        raise PrsError(
+            f"--pose {name}: found '{text}', expected a number with or without a unit, such as 10deg or 1275mm"
+        )
     unit = match["unit"]
     if not unit or dimension is None:
         return float(match["number"])

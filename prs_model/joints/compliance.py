@@ -18,6 +18,7 @@ from scipy.linalg import block_diag, null_space, orth
 FloatArray = NDArray[np.float64]
 
 _RANK_TOLERANCE = 1e-10
+_ROUND_OFF = 1e-14
 
 
 @dataclass(frozen=True)
@@ -110,7 +111,8 @@ def series_as_printed(joints: Sequence[JointCompliance], actions: Sequence[Float
 def _split(compliance: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Generalised inverse of a positive semi-definite C (m, m), and a basis (m, r) of its null space.
 
-    The rank is decided on C scaled to a unit diagonal, so that metres and radians do not matter.
+    The rank is decided on C scaled to a unit diagonal, so that metres and radians do not matter; a diagonal
+    entry that is round-off beside the largest one is zero.
     """
     scale = _unit_scale(compliance)
     values, vectors = np.linalg.eigh(compliance * np.outer(scale, scale))
@@ -122,7 +124,8 @@ def _split(compliance: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 def _unit_scale(matrix: FloatArray) -> FloatArray:
     diagonal = np.diag(matrix)
-    return 1.0 / np.sqrt(np.where(diagonal > 0, diagonal, 1.0))
+    present = diagonal > _ROUND_OFF * diagonal.max(initial=0.0)
+    return 1.0 / np.sqrt(np.where(present, diagonal, 1.0))
 
 
 def _null_space(matrix: FloatArray) -> FloatArray:

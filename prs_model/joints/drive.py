@@ -22,8 +22,8 @@ def ball_screw_compliance(screw: BallScrew, stroke: float) -> float:
     """
     if not 0.0 <= stroke <= screw.length:
         raise PrsError(
-            f"the nut would stand {stroke * 1e3:.1f} mm from the front bearing of a screw {screw.length * 1e3:.1f} mm long; "
-            "check the drive's origin and length"
+            f"the nut would stand {stroke * 1e3:.1f} mm from the front bearing of a screw "
+            f"{screw.length * 1e3:.1f} mm long; check the drive's origin and length"
         )
     front = 1.0 / screw.front_bearing + stroke / screw.EA
     rear = 1.0 / screw.rear_bearing + (screw.length - stroke) / screw.EA

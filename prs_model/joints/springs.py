@@ -1,4 +1,4 @@
-"""From the joints section to springs: a place, two body ends and a JointCompliance, for each interface or stage chain."""
+"""From the joints section to springs: a place, two ends and a JointCompliance for each interface or chain of stages."""
 
 from __future__ import annotations
 
@@ -108,9 +108,7 @@ def _in_parallel(
     return sides
 
 
-def _stages_in_series(
-    name: str, joint: Joint, urdf: Urdf, values: dict[str, float], placement: Placement
-) -> Spring:
+def _stages_in_series(name: str, joint: Joint, urdf: Urdf, values: dict[str, float], placement: Placement) -> Spring:
     frames = [placement(_frame(stage, urdf)) for stage in joint.stages]
     laws = [_lumped(stage, free_axis(stage, urdf), values) for stage in joint.stages]
     actions = [np.asarray((frames[0].inverse() * frame).toActionMatrix()) for frame in frames]
@@ -124,7 +122,8 @@ def _stages_in_series(
 def _lumped(stage: Stage, free: int | None, values: dict[str, float]) -> JointCompliance:
     """All of a stage's interfaces and its drive, gathered at the origin of its frame (eq. 11, 12)."""
     gathered = [
-        law.moved(np.asarray(pin.SE3(np.eye(3), at).toActionMatrix())) for _, at, law in _in_parallel(stage, free, values)
+        law.moved(np.asarray(pin.SE3(np.eye(3), at).toActionMatrix()))
+        for _, at, law in _in_parallel(stage, free, values)
     ]
     return parallel(gathered)
 

@@ -53,7 +53,9 @@ def draw_modes(modes: Modes, path: Path, title: str = "") -> None:
             moved = body.points + body.displacements[k] * (_AMPLITUDE * size / largest)
             amplitude = np.linalg.norm(body.displacements[k], axis=1) / largest
             axes.add_collection3d(
-                poly_class(body.points[body.triangles], facecolor="none", edgecolor=(0.5, 0.5, 0.5, 0.08), linewidth=0.2)
+                poly_class(
+                    body.points[body.triangles], facecolor="none", edgecolor=(0.5, 0.5, 0.5, 0.08), linewidth=0.2
+                )
             )
             faces = colour_map(amplitude[body.triangles].mean(axis=1))
             axes.add_collection3d(poly_class(moved[body.triangles], facecolor=faces, edgecolor="none", shade=True))

@@ -31,7 +31,7 @@ class Coordinate(NamedTuple):
 
 @dataclass(frozen=True)
 class SpringMotion:
-    """Relative displacement D (6, k) of a spring's ends on the body coordinates `rows` (k,), and its stiffness (6, 6)."""
+    """Relative displacement D (6, k) of a spring's ends on body coordinates `rows` (k,), and its stiffness (6, 6)."""
 
     joint: str
     interface: str | None

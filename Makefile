@@ -1,0 +1,38 @@
+# `make demo` and `make test` need only python3 (3.11 or later) with venv and pip.
+PYTHON ?= python3
+VENV   := .venv
+BIN    := $(VENV)/bin
+
+.PHONY: demo test check parts clean
+
+demo: $(VENV)/.test
+	@mkdir -p out
+	$(BIN)/prs-model modes head_3prs -n 8 --picture out/head_3prs_modes.png
+
+test: $(VENV)/.test
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest
+
+check: $(VENV)/.dev
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+# Rebuilds the meshes and super-elements of head_3prs from its part script (needs Debian's libglu1-mesa and X libraries).
+parts: $(VENV)/.mesh
+	$(BIN)/python -m prs_machines.head_3prs.rebuild
+
+$(VENV)/.pip:
+	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "prs-model needs Python 3.11 or later: make PYTHON=python3.11 ...")'
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --upgrade pip
+	@touch $@
+
+$(VENV)/.%: $(VENV)/.pip pyproject.toml
+	$(BIN)/python -m pip install --quiet --editable '.[$*]'
+	@touch $@
+
+.SECONDARY:
+
+clean:
+	rm -rf $(VENV) out dist
