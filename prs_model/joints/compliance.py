@@ -12,10 +12,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import block_diag, null_space, orth
 
-FloatArray = NDArray[np.float64]
+from ..arrays import FloatArray
 
 _RANK_TOLERANCE = 1e-10
 _ROUND_OFF = 1e-14
@@ -30,7 +29,7 @@ class JointCompliance:
 
     def moved(self, action: FloatArray) -> JointCompliance:
         """The joint seen from another frame; `action` (6, 6) takes displacements there (X in eq. 11-14)."""
-        return JointCompliance(np.linalg.solve(action.T, self.wrenches), self.compliance)
+        return JointCompliance(np.asarray(np.linalg.solve(action.T, self.wrenches)), self.compliance)
 
     @property
     def free_twists(self) -> FloatArray:

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import pinocchio as pin
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..description.schema import (
     AXES,
     DiagonalCompliance,
@@ -27,8 +27,6 @@ from .compliance import (
     series_as_printed,
 )
 from .drive import drive_compliance
-
-FloatArray = NDArray[np.float64]
 
 Placement = Callable[[str], pin.SE3]
 
@@ -68,11 +66,8 @@ def free_axis(stage: Stage, urdf: Urdf) -> int | None:
     """The axis 0..5 of the stage's frame along or about which its URDF joint moves; None for a fixed one."""
     if stage.urdf is None:
         return None
-    joint = urdf.joint(stage.urdf)
-    if joint.kind == "fixed":
-        return None
-    axis = int(np.argmax(np.abs(joint.axis)))
-    return axis if joint.kind == "prismatic" else axis + 3
+    name = urdf.joints[stage.urdf].free_axis
+    return None if name is None else AXES.index(name)
 
 
 def elastic_law(law: ElasticLaw, free: int | None) -> JointCompliance:
@@ -130,4 +125,4 @@ def _lumped(stage: Stage, free: int | None, values: dict[str, float]) -> JointCo
 
 def _frame(stage: Stage, urdf: Urdf) -> str:
     """The URDF link whose frame the stage's axes are: the child link of its joint, or the frame it names."""
-    return urdf.joint(stage.urdf).child if stage.urdf is not None else str(stage.frame)
+    return urdf.joints[stage.urdf].child if stage.urdf is not None else str(stage.frame)

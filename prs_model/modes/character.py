@@ -7,11 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import pinocchio as pin
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..synthesis.system import System
-
-FloatArray = NDArray[np.float64]
 
 _OUTPUT_AXES = ("along u", "along v", "along w", "about u", "about v", "about w")
 _OWN_AXES = tuple(f"{word} their {axis}" for word in ("along", "about") for axis in "xyz")

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import LinAlgError, cholesky, eigh
 
+from ..arrays import FloatArray
 from ..errors import PrsError
-
-FloatArray = NDArray[np.float64]
 
 _PIVOT_TOLERANCE = 1e-12
 _MASS_TOLERANCE = 1e-14

@@ -6,14 +6,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..errors import PrsError
 from ..synthesis.system import System
 from .character import Character, characters
 from .eigen import lowest_modes
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -54,7 +52,7 @@ class Modes:
         """What moves in each mode, and along or about what."""
         return characters(self.system, self.shapes)
 
-    def _joint_energy(self) -> Mapping[str, FloatArray]:
+    def _joint_energy(self) -> dict[str, FloatArray]:
         energy: dict[str, FloatArray] = {}
         for spring in self.system.springs:
             strain = spring.displacement @ (self.system.expansion[spring.rows] @ self.shapes)

@@ -9,14 +9,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray, IntArray
 from ..errors import MissingExtraError, PrsError
 
 if TYPE_CHECKING:
     from .modes import Modes
 
-FloatArray = NDArray[np.float64]
 
 _FORMATS = (".png", ".svg", ".pdf")
 _AMPLITUDE = 0.06  # largest displacement drawn, as a share of the machine's size
@@ -86,7 +85,7 @@ class _BodyPicture:
         self.displacements = moved @ rotation.T
 
 
-def _star(nodes: FloatArray) -> tuple[FloatArray, NDArray[np.intp]]:
+def _star(nodes: FloatArray) -> tuple[FloatArray, IntArray]:
     """Triangles between a body's nodes, or lines from one node, where there is no surface to draw."""
     points = np.vstack([nodes, nodes.mean(axis=0)]) if len(nodes) > 2 else nodes
     last, ring = len(points) - 1, np.arange(len(nodes))

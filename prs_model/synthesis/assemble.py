@@ -6,8 +6,8 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 import pinocchio as pin
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray, IntArray
 from ..description import MachineDescription
 from ..errors import PrsError
 from ..joints import Spring, springs
@@ -15,9 +15,6 @@ from ..kinematics import Configuration
 from ..reduction import SuperElement, TravellingElement
 from .elimination import independent_coordinates
 from .system import Coordinate, SpringMotion, System
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.intp]
 
 
 def assemble(

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import qr, solve_triangular
 
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.intp]
+from ..arrays import FloatArray, IntArray
 
 _RANK_TOLERANCE = 1e-9
 
@@ -33,4 +31,4 @@ def independent_coordinates(constraints: FloatArray) -> tuple[FloatArray, IntArr
     expansion[kept, position[kept]] = 1.0
     solved = solve_triangular(triangle[:rank, :rank], triangle[:rank, rank:])
     expansion[np.ix_(dependent, position[order[rank:]])] = -solved
-    return expansion, kept
+    return expansion, kept.astype(np.intp)

@@ -9,16 +9,14 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import pinocchio as pin
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray, IntArray
 from ..description.schema import Damping
 from ..kinematics import Configuration
 from ..reduction import SuperElement
 
 if TYPE_CHECKING:
     from ..modes import Modes
-
-FloatArray = NDArray[np.float64]
 
 
 class Coordinate(NamedTuple):
@@ -35,7 +33,7 @@ class SpringMotion:
 
     joint: str
     interface: str | None
-    rows: NDArray[np.intp]
+    rows: IntArray
     displacement: FloatArray
     stiffness: FloatArray
 
