@@ -84,7 +84,9 @@ def _unpack(raw: Any, unit: str) -> tuple[Any, Source | None, str | None]:
         return raw, None, None
     unknown = set(raw) - {"value", "source", "note"}
     if unknown or "value" not in raw:
-        raise PydanticCustomError("number", f"found keys {sorted(map(str, raw))}, expected a number ({unit}) or value, source, note")
+        raise PydanticCustomError(
+            "number", f"found keys {sorted(map(str, raw))}, expected a number ({unit}) or value, source, note"
+        )
     source = raw.get("source")
     if source is not None and source not in get_args(Source):
         raise PydanticCustomError("source", f"found source '{source}', expected one of {', '.join(get_args(Source))}")

@@ -90,7 +90,7 @@ class Cylinder(Section):
 
 
 class Selection(Section):
-    """Which finite-element nodes of the part belong to an interface: one way of naming them, or several to intersect."""
+    """Which finite-element nodes of the part belong to an interface: named one way, or several to intersect."""
 
     set: str | None = None
     nodes: tuple[NodeId, ...] | None = None

@@ -62,8 +62,8 @@ class Units(BaseModel):
         ratio = Dimension(force=1, mass=-1, length=-1).factor(units)
         if abs(ratio - 1.0) > 1e-6:
             raise ValueError(
-                f"'{text}' is not consistent: 1 {units.force} is {1 / ratio:g} times 1 {units.mass} x {units.length}/s^2; "
-                "use for example 'mm-N-tonne-s' or 'm-N-kg-s'"
+                f"'{text}' is not consistent: 1 {units.force} is {1 / ratio:g} times "
+                f"1 {units.mass} x {units.length}/s^2; use for example 'mm-N-tonne-s' or 'm-N-kg-s'"
             )
         return units
 
@@ -91,7 +91,12 @@ class Dimension:
 
     def label(self, units: Units) -> str:
         """The unit in words, such as ``N/mm``."""
-        parts = [(units.force, self.force), (units.mass, self.mass), (units.length, self.length), (units.angle, self.angle)]
+        parts = [
+            (units.force, self.force),
+            (units.mass, self.mass),
+            (units.length, self.length),
+            (units.angle, self.angle),
+        ]
         above = "*".join(unit if n == 1 else f"{unit}^{n}" for unit, n in parts if n > 0)
         below = "/".join(unit if n == -1 else f"{unit}^{-n}" for unit, n in parts if n < 0)
         return (above or "1") + (f"/{below}" if below else "") if above or below else "a plain number"

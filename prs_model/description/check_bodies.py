@@ -1,0 +1,154 @@
+"""Bodies: their link, their reducer and its options, and where they are held."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import ValidationError
+
+from .. import plugins
+from ..errors import UnknownNameError
+from .messages import report
+from .problems import Place, not_known
+from .schema import Body, Box, Cylinder, Interface, Section, Selection
+from .subject import Subject
+from .units import Units
+
+
+def check_bodies(subject: Subject) -> None:
+    """Check every body of the machine."""
+    for name, body in subject.file.bodies.items():
+        _check_reducer(subject, ("bodies", name), body)
+    for place, body in subject.each_body():
+        subject.check_link((*place, "frame"), body.frame)
+        _check_ground(subject, place, body)
+        for name, interface in body.interfaces.items():
+            written = _as_written(subject.file.bodies[str(place[1])], body, name)
+            _check_interface(subject, (*place, "interfaces", written), interface)
+
+
+def options_in_si(body: Body, units: Units) -> dict[str, Any]:
+    """The reducer's options, validated and in SI, as its Options class takes them back. Raises ValidationError."""
+    options = _options_class(body.reducer).model_validate(body.options, context={"units": units})
+    return options.model_dump(exclude_unset=True, by_alias=True)
+
+
+def _options_class(reducer: str) -> type[Section]:
+    return plugins.reducer(reducer).Options
+
+
+def _as_written(entry: Body, instance: Body, name: str) -> str:
+    """The name an instance's interface has in the file, where it may hold a placeholder."""
+    return dict(zip(instance.interfaces, entry.interfaces, strict=True))[name]
+
+
+def _check_reducer(subject: Subject, place: Place, body: Body) -> None:
+    try:
+        plugin = plugins.reducer(body.reducer)
+    except UnknownNameError as error:
+        known = body.reducer in error.known
+        message = str(error) if known else not_known("a reducer", body.reducer, error.known)
+        subject.problems.add((*place, "reducer"), message)
+        return
+    _check_source(subject, place, body, plugin.needs_source)
+    try:
+        options_in_si(body, subject.file.units)
+    except ValidationError as error:
+        report(error, plugin.Options, body.options, subject.problems, (*place, "options"))
+
+
+def _check_source(subject: Subject, place: Place, body: Body, needed: bool) -> None:
+    if body.source is None:
+        if needed:
+            message = f"found nothing, expected the part's file; reducer '{body.reducer}' reads one: add 'source'"
+            subject.problems.add((*place, "source"), message)
+        return
+    if not needed:
+        message = f"found '{body.source}', expected nothing; reducer '{body.reducer}' reads no file: remove 'source'"
+        subject.problems.add((*place, "source"), message)
+    elif (
+        "<" not in body.source and subject.file.reduction.store is None and not (subject.folder / body.source).is_file()
+    ):
+        message = f"found '{body.source}', expected a file in {subject.folder}; make it, or correct the name"
+        subject.problems.add((*place, "source"), message)
+    if body.units is not None:
+        try:
+            Units.parse(body.units)
+        except ValueError as error:
+            subject.problems.add((*place, "units"), str(error))
+
+
+def _check_ground(subject: Subject, place: Place, body: Body) -> None:
+    if body.clamped and not body.grounded:
+        message = "found clamped nodes, expected a grounded body; add 'grounded: true'"
+        subject.problems.add((*place, "clamped"), message)
+
+
+def _check_interface(subject: Subject, place: Place, interface: Interface) -> None:
+    ways = {
+        "a selection (set, nodes, box, cylinder)": not interface.is_empty(),
+        "node": interface.node is not None,
+        "members": bool(interface.members),
+    }
+    given = [way for way, present in ways.items() if present]
+    if len(given) > 1:
+        subject.problems.add(place, f"found {' and '.join(given)}, expected only one of them")
+    _check_selection(subject, place, interface)
+    _check_members(subject, place, interface)
+    if interface.travel is not None:
+        _check_travel(subject, (*place, "travel"), interface)
+
+
+def _check_members(subject: Subject, place: Place, interface: Interface) -> None:
+    seen: set[str] = set()
+    for index, member in enumerate(interface.members):
+        where = (*place, "members", index)
+        if member.name in seen:
+            message = f"found '{member.name}' a second time, expected a name of its own for every member"
+            subject.problems.add((*where, "name"), message)
+        elif "." in member.name or not member.name:
+            subject.problems.add((*where, "name"), f"found '{member.name}', expected a name without dots")
+        elif member.is_empty():
+            subject.problems.add(where, "found no nodes, expected one or more of set, nodes, box, cylinder")
+        seen.add(member.name)
+        _check_selection(subject, where, member)
+
+
+def _check_selection(subject: Subject, place: Place, selection: Selection) -> None:
+    if selection.box is not None:
+        _check_box(subject, (*place, "box"), selection.box)
+    if selection.cylinder is not None:
+        _check_cylinder(subject, (*place, "cylinder"), selection.cylinder)
+    if selection.nodes is not None and not selection.nodes:
+        subject.problems.add((*place, "nodes"), "found an empty list, expected node numbers")
+
+
+def _check_box(subject: Subject, place: Place, box: Box) -> None:
+    for axis in ("x", "y", "z"):
+        bounds = getattr(box, axis)
+        if bounds is not None and bounds[0] >= bounds[1]:
+            subject.problems.add((*place, axis), "found the bounds in falling order, expected [low, high]")
+
+
+def _check_cylinder(subject: Subject, place: Place, cylinder: Cylinder) -> None:
+    if not any(cylinder.axis):
+        subject.problems.add((*place, "axis"), "found a zero axis, expected a direction")
+    if cylinder.length is not None and cylinder.length[0] >= cylinder.length[1]:
+        subject.problems.add((*place, "length"), "found the bounds in falling order, expected [low, high]")
+
+
+def _check_travel(subject: Subject, place: Place, interface: Interface) -> None:
+    travel = interface.travel
+    if travel is None or subject.urdf is None:
+        return
+    if not any(travel.along):
+        subject.problems.add((*place, "along"), "found a zero vector, expected the direction of travel")
+    if any(a >= b for a, b in zip(travel.stations, travel.stations[1:], strict=False)):
+        subject.problems.add((*place, "stations"), "found values out of order, expected rising values of the joint")
+    joint = subject.urdf.joints.get(travel.joint)
+    if joint is None:
+        movable = subject.urdf.movable
+        subject.problems.add((*place, "joint"), not_known("a joint of the URDF", travel.joint, movable))
+    elif joint.kind != "prismatic":
+        message = f"found '{joint.name}', which is {joint.kind}, expected a prismatic joint"
+        subject.problems.add((*place, "joint"), message)

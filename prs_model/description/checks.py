@@ -1,0 +1,44 @@
+"""The cross checks: what no section can see by itself."""
+
+from __future__ import annotations
+
+from .check_bodies import check_bodies
+from .check_joints import check_joints
+from .check_names import check_names
+from .check_task import check_task
+from .subject import Subject
+
+
+def check(subject: Subject) -> None:
+    """Add everything that does not fit together to the subject's problems."""
+    check_names(subject)
+    check_task(subject)
+    check_closures(subject)
+    check_bodies(subject)
+    check_joints(subject)
+    check_damping(subject)
+    check_output(subject)
+
+
+def check_closures(subject: Subject) -> None:
+    """Closures join two different frames of the URDF."""
+    for place, closure in subject.each_closure():
+        for index, link in enumerate(closure.between):
+            subject.check_link((*place, "between", index), link)
+        if closure.between[0] == closure.between[1]:
+            message = f"found '{closure.between[0]}' twice, expected two different links"
+            subject.problems.add((*place, "between"), message)
+
+
+def check_damping(subject: Subject) -> None:
+    """Damping is modal or Rayleigh's."""
+    damping = subject.file.damping
+    if damping.modal is not None and damping.rayleigh is not None:
+        subject.problems.add(("damping",), "found modal and rayleigh, expected one of the two; keep one")
+
+
+def check_output(subject: Subject) -> None:
+    """The output is an interface of a body, and a frame."""
+    output = subject.file.output
+    subject.check_node(("output", "node"), output.node)
+    subject.check_link(("output", "frame"), output.frame)
