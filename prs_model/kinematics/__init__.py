@@ -1,0 +1,6 @@
+"""Kinematics of closed mechanisms: from a pose to joint values and the placement of every link."""
+
+from .configuration import Configuration, Configurations
+from .kinematics import Kinematics
+
+__all__ = ["Configuration", "Configurations", "Kinematics"]

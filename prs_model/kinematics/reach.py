@@ -1,0 +1,116 @@
+"""Saying why a pose is out of reach: the limb, the joint, its value and its limits, in millimetres and degrees."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..description.units import Dimension, Units
+from ..errors import UnreachablePoseError
+from .tree import Tree
+
+_READABLE = Units(length="mm", angle="deg")
+_LIMIT_SLACK = 1e-9  # m, rad: rounding of a pose that stands exactly at a limit
+
+
+@dataclass(frozen=True)
+class Reach:
+    """Joint limits of a machine and the words for them."""
+
+    tree: Tree
+    coordinates: Mapping[str, Dimension]
+    symmetry: Mapping[str, tuple[int | str, ...]]
+
+    def beyond_limits(self, pose: FloatArray, q: FloatArray) -> UnreachablePoseError | None:
+        """The error for a pose (d,) whose configuration (n,) passes a joint limit; the worst joint is named."""
+        j = self._worst(q)
+        if j is None:
+            return None
+        return self._error(pose, f"{self._joint(j)} would stand at {self._stand(q, j)}", q, j)
+
+    def excess(self, q: FloatArray) -> FloatArray:
+        """How far joints (..., n) are beyond their limits [m, rad]; zero within."""
+        beyond = np.maximum(self.tree.lower - q, q - self.tree.upper)
+        return np.where(beyond > _LIMIT_SLACK, beyond, 0.0)
+
+    def no_closed_form(self, pose: FloatArray, q: FloatArray) -> UnreachablePoseError:
+        """The error for a pose (d,) at which the closed form finds no value for the joints that are NaN in q (n,)."""
+        lacking = np.flatnonzero(np.isnan(q))
+        limbs = list(dict.fromkeys(filter(None, (self._limb(self.tree.names[j]) for j in lacking))))
+        joints = ", ".join(self.tree.names[j] for j in lacking)
+        who = f"{' and '.join(limbs)} cannot reach it: " if limbs else ""
+        error = UnreachablePoseError(
+            f"pose {self.pose_text(pose)}: {who}no value of {joints} closes the loops",
+            pose=self._pose(pose),
+            joint=self.tree.names[lacking[0]],
+        )
+        return error
+
+    def cut_off(self, pose: FloatArray, q: FloatArray, share: float) -> UnreachablePoseError:
+        """The error for a pose (d,) towards which the machine follows only so far, to configuration q (n,)."""
+        way = f"the loops close only up to {100 * share:.1f} % of the way from the reference pose"
+        j = self._worst(q)
+        if j is None:
+            return self._error(pose, f"{way}; beyond it the pose is out of reach or behind a singular configuration")
+        return self._error(pose, f"{way}, where {self._joint(j)} stands at {self._stand(q, j)}", q, j)
+
+    def pose_text(self, pose: FloatArray) -> str:
+        """A pose (d,) in words, such as ``nutation=70 deg, z=1275 mm``."""
+        return ", ".join(
+            f"{name}={_in_readable_units(value, dimension)}"
+            for (name, dimension), value in zip(self.coordinates.items(), pose, strict=True)
+        )
+
+    def joint_text(self, j: int, value: float) -> str:
+        """A value of joint j in words."""
+        return _in_readable_units(value, self._dimension(j))
+
+    def _error(
+        self, pose: FloatArray, what: str, q: FloatArray | None = None, j: int | None = None
+    ) -> UnreachablePoseError:
+        message = f"pose {self.pose_text(pose)}: {what}"
+        if q is None or j is None:
+            return UnreachablePoseError(message, pose=self._pose(pose))
+        limits = (float(self.tree.lower[j]), float(self.tree.upper[j]))
+        joint = self.tree.names[j]
+        return UnreachablePoseError(message, pose=self._pose(pose), joint=joint, value=float(q[j]), limits=limits)
+
+    def _worst(self, q: FloatArray) -> int | None:
+        """The joint that is furthest beyond its limits for its range."""
+        excess = self.excess(q)
+        if not excess.any():
+            return None
+        return int(np.argmax(excess / np.maximum(self.tree.upper - self.tree.lower, _LIMIT_SLACK)))
+
+    def _joint(self, j: int) -> str:
+        name = self.tree.names[j]
+        limb = self._limb(name)
+        return f"joint {name} ({limb})" if limb else f"joint {name}"
+
+    def _stand(self, q: FloatArray, j: int) -> str:
+        dimension = self._dimension(j)
+        lower, upper = (_in_readable_units(limit, dimension) for limit in (self.tree.lower[j], self.tree.upper[j]))
+        return f"{_in_readable_units(q[j], dimension)}, limits {lower} .. {upper}"
+
+    def _dimension(self, j: int) -> Dimension:
+        return Dimension(angle=1) if self.tree.revolute[j] else Dimension(length=1)
+
+    def _limb(self, joint: str) -> str | None:
+        """``limb 2`` for a joint named ..._2 of a machine with the symmetry ``limb: [1, 2, 3]``."""
+        for kind, members in self.symmetry.items():
+            for member in members:
+                if joint.endswith(f"_{member}"):
+                    return f"{kind} {member}"
+        return None
+
+    def _pose(self, pose: FloatArray) -> dict[str, float]:
+        return dict(zip(self.coordinates, map(float, pose), strict=True))
+
+
+def _in_readable_units(value: float, dimension: Dimension) -> str:
+    decimals = 1 if dimension.length else 2
+    unit = dimension.label(_READABLE)
+    return f"{value / dimension.factor(_READABLE):.{decimals}f} {unit}"
