@@ -1,0 +1,132 @@
+"""From the words of an interface (a set, labels, a box, a cylinder) to the nodes it means."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..description.schema import Box, Cylinder, NodeId, Selection
+from ..errors import PartFileError
+
+if TYPE_CHECKING:
+    from .model import FiniteElementModel
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+Mask = NDArray[np.bool_]
+
+SLACK = 1e-6  # of the part's size: nodes this close to the face of a box count as inside
+
+
+def select(
+    model: FiniteElementModel, selection: Selection, *, shift: ArrayLike = (0.0, 0.0, 0.0), entry: str = "selection"
+) -> tuple[IntArray, FloatArray]:
+    """Node indices (m,) and weights (m,) that a selection means; several ways of naming them are intersected.
+
+    Weights are nodal areas [m^2] where the selected set has them, else one. shift: how far boxes and cylinders have
+    moved [m]. Nodes without DOFs (clamped ones) are left out. Raises PartFileError naming `entry` when a set or label
+    is unknown or nothing is left, with what each part of the selection found.
+    """
+    masks = dict(_masks(model, selection, np.asarray(shift, dtype=float), entry))
+    if not masks:
+        raise PartFileError(model.source, f"{entry}: no nodes named, expected one of set, nodes, box, cylinder")
+    alive = np.any(model.rows >= 0, axis=1)
+    chosen = np.flatnonzero(np.logical_and.reduce([alive, *masks.values()]))
+    if not len(chosen):
+        raise PartFileError(model.source, _nothing(model, masks, alive, entry))
+    return chosen, _weights(model, selection, chosen)
+
+
+def unknown_set(model: FiniteElementModel, name: str, entry: str) -> str:
+    """The sentence for a node set that the part does not have."""
+    known = list(model.node_sets)
+    close = get_close_matches(name, known, n=1)
+    hint = f"; did you mean '{close[0]}'?" if close else ""
+    return (
+        f"{entry}: found node set '{name}', expected one of {', '.join(known) or 'none (the file has no sets)'}{hint}"
+    )
+
+
+def _masks(
+    model: FiniteElementModel, selection: Selection, shift: FloatArray, entry: str
+) -> Iterable[tuple[str, Mask]]:
+    if selection.set is not None:
+        if selection.set not in model.node_sets:
+            raise PartFileError(model.source, unknown_set(model, selection.set, f"{entry}.set"))
+        yield f"set '{selection.set}'", _mask_of(model, model.node_sets[selection.set])
+    if selection.nodes is not None:
+        yield "nodes", _mask_of(model, _labelled(model, selection.nodes, f"{entry}.nodes"))
+    slack = SLACK * float(np.ptp(model.coordinates, axis=0).max())
+    points = model.coordinates - shift
+    if selection.box is not None:
+        yield "box", _in_box(points, selection.box, slack)
+    if selection.cylinder is not None:
+        yield "cylinder", _on_cylinder(points, selection.cylinder, slack, model.source, entry)
+
+
+def _mask_of(model: FiniteElementModel, nodes: IntArray) -> Mask:
+    mask = np.zeros(len(model.coordinates), dtype=bool)
+    mask[nodes] = True
+    return mask
+
+
+def _labelled(model: FiniteElementModel, labels: tuple[NodeId, ...], entry: str) -> IntArray:
+    place = {int(label): index for index, label in enumerate(model.node_ids)}
+    wanted = [int(label) if str(label).lstrip("-").isdigit() else label for label in labels]
+    missing = [label for label in wanted if label not in place]
+    if missing:
+        low, high = model.node_ids.min(), model.node_ids.max()
+        raise PartFileError(
+            model.source, f"{entry}: found node {missing[0]!r}, expected labels of the part file ({low} to {high})"
+        )
+    return np.array([place[label] for label in wanted if isinstance(label, int)], dtype=np.int64)
+
+
+def _in_box(points: FloatArray, box: Box, slack: float) -> Mask:
+    inside = np.ones(len(points), dtype=bool)
+    for axis, limits in enumerate((box.x, box.y, box.z)):
+        if limits is not None:
+            inside &= (points[:, axis] >= limits[0] - slack) & (points[:, axis] <= limits[1] + slack)
+    return inside
+
+
+def _on_cylinder(points: FloatArray, cylinder: Cylinder, slack: float, source: str, entry: str) -> Mask:
+    axis = np.array(cylinder.axis, dtype=float)
+    if not np.any(axis):
+        raise PartFileError(source, f"{entry}.cylinder.axis: found (0, 0, 0), expected a direction")
+    axis /= np.linalg.norm(axis)
+    arms = points - np.array(cylinder.point, dtype=float)
+    along = arms @ axis
+    radius = np.linalg.norm(arms - np.outer(along, axis), axis=1)
+    on = np.abs(radius - cylinder.radius) <= cylinder.tolerance
+    if cylinder.length is not None:
+        on &= (along >= cylinder.length[0] - slack) & (along <= cylinder.length[1] + slack)
+    return np.asarray(on)
+
+
+def _weights(model: FiniteElementModel, selection: Selection, chosen: IntArray) -> FloatArray:
+    if selection.set is None or selection.set not in model.set_weights:
+        return np.ones(len(chosen))
+    weights = np.zeros(len(model.coordinates))
+    weights[model.node_sets[selection.set]] = model.set_weights[selection.set]
+    chosen_weights = weights[chosen]
+    return chosen_weights if np.any(chosen_weights > 0.0) else np.ones(len(chosen))
+
+
+def _nothing(model: FiniteElementModel, masks: dict[str, Mask], alive: Mask, entry: str) -> str:
+    found = ", ".join(f"{name} {np.count_nonzero(mask)}" for name, mask in masks.items())
+    if np.any(np.logical_and.reduce(list(masks.values()))):
+        return f"{entry}: all its nodes are clamped ({found}); clamp another set, or hold the interface elsewhere"
+    base = next(iter(masks.values()))
+    points = model.coordinates[base] if len(masks) > 1 and np.any(base) else model.coordinates
+    what = next(iter(masks)) if len(masks) > 1 and np.any(base) else "the part"
+    reach = f"from {_point(points.min(axis=0))} to {_point(points.max(axis=0))} m"
+    return f"{entry}: no node is in all of: {found}; {what} reaches {reach}"
+
+
+def _point(point: FloatArray) -> str:
+    return "(" + ", ".join(f"{x:.4g}" for x in point) + ")"

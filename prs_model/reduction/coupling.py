@@ -1,0 +1,84 @@
+"""Two ways to tie an interface's finite-element nodes to one condensation node of six coordinates."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+
+from ..description.schema import Coupling
+from ..errors import PartFileError
+from ..finite_elements import FiniteElementModel
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class Tie:
+    """Finite-element nodes `indices` (m,), weighted (m,), that act through the condensation node at `position` [m]."""
+
+    node: str
+    indices: IntArray
+    weights: FloatArray
+    position: FloatArray
+    coupling: Coupling
+
+
+def rigid_rows(model: FiniteElementModel, tie: Tie) -> tuple[IntArray, FloatArray]:
+    """Rigid multipoint constraint, eq. (4)-(6): rows b (m,) of the model and T (m, 6) with ``u_b = T U``."""
+    rows = model.rows_of(tie.indices)
+    return rows, model.rigid_body_modes(rows, about=tie.position)
+
+
+def averaging_matrix(model: FiniteElementModel, tie: Tie) -> csr_array:
+    """Distributing coupling: D (6, n) with ``U = D u``, the rigid motion that fits the nodes best.
+
+    U minimises sum_i w_i |u_i - X_i U|^2 over the nodes' translations, so D = (X^T W X)^-1 X^T W and D X = 1: the
+    interface stays as flexible as the part makes it, and a load on U spreads over the nodes by their weights.
+    """
+    rows = model.rows[tie.indices, :3]
+    weights = np.repeat(tie.weights, 3)[rows.ravel() >= 0]
+    rows = rows[rows >= 0]
+    motions = model.rigid_body_modes(rows, about=tie.position)
+    weighted = motions * (weights / weights.sum())[:, None]
+    averaging = np.linalg.solve(motions.T @ weighted, weighted.T)
+    place = np.tile(rows, 6)
+    return csr_array((averaging.ravel(), (np.repeat(np.arange(6), len(rows)), place)), shape=(6, model.size))
+
+
+def check_ties(model: FiniteElementModel, ties: Sequence[Tie]) -> None:
+    """Raises PartFileError when a tie's nodes lie on a line (or point), or two rigid ties share nodes."""
+    for tie in ties:
+        if not _holds_six_motions(model, tie):
+            raise PartFileError(
+                model.source,
+                f"interface {tie.node}: its {len(tie.indices)} nodes lie on one line and cannot take up a rotation "
+                "about it; select nodes of a surface",
+            )
+    for one, other in combinations([tie for tie in ties if tie.coupling == "rigid"], 2):
+        shared = model.node_ids[np.intersect1d(one.indices, other.indices)]
+        if len(shared):
+            listed = ", ".join(map(str, shared[:6])) + (f" and {len(shared) - 6} more" if len(shared) > 6 else "")
+            raise PartFileError(
+                model.source,
+                f"interfaces {one.node} and {other.node} share the nodes {listed}, which cannot follow two rigid "
+                "nodes at once; make the selections apart, or tie one of them with 'coupling: averaged'",
+            )
+
+
+def _holds_six_motions(model: FiniteElementModel, tie: Tie) -> bool:
+    rows = model.rows_of(tie.indices)
+    if tie.coupling == "averaged":
+        weighted = tie.indices[tie.weights > 0.0]
+        rows = model.rows[weighted, :3].ravel()
+        rows = rows[rows >= 0]
+    centre = model.coordinates[tie.indices].mean(axis=0)
+    motions = model.rigid_body_modes(rows, about=centre)
+    size = float(np.linalg.norm(model.coordinates[tie.indices] - centre, axis=1).max())
+    scale = np.array([1.0, 1.0, 1.0, *(3 * [1.0 / size if size > 0.0 else 1.0])])
+    return len(rows) >= 6 and float(np.linalg.svd(motions * scale, compute_uv=False)[-1]) > 1e-6 * np.sqrt(len(rows))

@@ -1,0 +1,49 @@
+"""Direct solution with large symmetric positive definite matrices: MKL PARDISO when installed, else SuperLU."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from importlib.util import find_spec
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csc_array, csr_array, triu
+from scipy.sparse.linalg import splu
+
+FloatArray = NDArray[np.float64]
+Solve = Callable[[FloatArray], FloatArray]
+
+logger = logging.getLogger("prs_model")
+
+
+def factorize(matrix: csr_array) -> Solve:
+    """A function b -> A^-1 b for symmetric positive definite A (n, n); b is (n,) or (n, c).
+
+    Raises numpy.linalg.LinAlgError when A is singular.
+    """
+    if find_spec("pypardiso") is not None:
+        return _pardiso(matrix)
+    return _superlu(matrix)
+
+
+def _superlu(matrix: csr_array) -> Solve:
+    try:
+        factor = splu(
+            csc_array(matrix),
+            permc_spec="MMD_AT_PLUS_A",
+            diag_pivot_thresh=0.0,
+            options={"SymmetricMode": True},
+        )
+    except RuntimeError as error:
+        raise np.linalg.LinAlgError(str(error)) from error
+    return lambda b: np.asarray(factor.solve(b))
+
+
+def _pardiso(matrix: csr_array) -> Solve:
+    from pypardiso import PyPardisoSolver
+
+    solver = PyPardisoSolver(mtype=2)
+    upper = csr_array(triu(matrix, format="csr"))
+    solver.factorize(upper)
+    return lambda b: np.asarray(solver.solve(upper, b))

@@ -1,0 +1,80 @@
+"""The interfaces of a body as ties between finite-element nodes and condensation nodes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..description.schema import Interface, Member, Point, Selection
+from ..errors import PartFileError
+from ..finite_elements import FiniteElementModel
+from ..finite_elements.selection import select
+from .coupling import Tie
+from .recipe import Settings
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+STILL = np.zeros(3)
+
+
+def interface_ties(
+    model: FiniteElementModel,
+    interfaces: Mapping[str, Interface],
+    settings: Settings,
+    shift: FloatArray = STILL,
+) -> list[Tie]:
+    """One tie per condensation node, in the order of the interfaces; travelling ones moved by `shift` (3,) [m].
+
+    An interface becomes the node ``<interface>``, or, tied at the interface, one node ``<interface>.<member>`` for each
+    of its members. A node stands at `at`, by default in the weighted centre of what it holds.
+    """
+    ties: list[Tie] = []
+    for name, interface in interfaces.items():
+        moved = STILL if interface.travel is None else shift
+        ties.extend(_ties(model, name, interface, settings, moved))
+    return ties
+
+
+def _ties(
+    model: FiniteElementModel, name: str, interface: Interface, settings: Settings, shift: FloatArray
+) -> Iterator[Tie]:
+    entry, coupling = f"interfaces.{name}", settings.coupling_of(interface)
+    if interface.node is not None:
+        raise PartFileError(model.source, f"{entry}.node: only parts that are already reduced have retained nodes")
+    if interface.members and not interface.is_empty():
+        raise PartFileError(model.source, f"{entry}: name the nodes in the interface or in its members, not in both")
+    parts: tuple[Selection, ...] = interface.members or (interface,)
+    chosen = [select(model, _only_selection(part), shift=shift, entry=_entry(entry, part)) for part in parts]
+    if settings.tie_of(interface) == "interface" and interface.members:
+        for member, (indices, weights) in zip(interface.members, chosen, strict=True):
+            position = _position(model, member.at, shift, indices, weights)
+            yield Tie(f"{name}.{member.name}", indices, weights, position, coupling)
+    else:
+        indices, weights = _union(chosen)
+        yield Tie(name, indices, weights, _position(model, interface.at, shift, indices, weights), coupling)
+
+
+def _entry(entry: str, part: Selection) -> str:
+    return f"{entry}.members[{part.name}]" if isinstance(part, Member) else entry
+
+
+def _only_selection(part: Selection) -> Selection:
+    return Selection(set=part.set, nodes=part.nodes, box=part.box, cylinder=part.cylinder)
+
+
+def _union(chosen: list[tuple[IntArray, FloatArray]]) -> tuple[IntArray, FloatArray]:
+    """All nodes once; a node that several members share has the sum of its weights, as areas add up."""
+    indices, place = np.unique(np.concatenate([nodes for nodes, _ in chosen]), return_inverse=True)
+    weights = np.bincount(place, weights=np.concatenate([weights for _, weights in chosen]))
+    return indices, np.asarray(weights, dtype=float)
+
+
+def _position(
+    model: FiniteElementModel, at: Point | None, shift: FloatArray, indices: IntArray, weights: FloatArray
+) -> FloatArray:
+    if at is not None:
+        return np.array(at, dtype=float) + shift
+    return np.asarray(np.average(model.coordinates[indices], axis=0, weights=weights))

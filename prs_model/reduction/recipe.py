@@ -1,0 +1,111 @@
+"""The recipe of a reduced part: everything that determines the result, in one canonical text with a fingerprint."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ..description.schema import Body, Coupling, Interface, ReductionDefaults, Section, Tie
+
+VERSION = 1  # raised when the reduction itself changes its results
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What holds for one body once the machine's defaults are filled in."""
+
+    coupling: Coupling
+    tie: Tie
+    modes: int
+
+    @classmethod
+    def of(cls, body: Body, defaults: ReductionDefaults) -> Settings:
+        return cls(
+            body.coupling or defaults.coupling,
+            body.tie or defaults.tie,
+            defaults.modes if body.modes is None else body.modes,
+        )
+
+    def coupling_of(self, interface: Interface) -> Coupling:
+        return interface.coupling or self.coupling
+
+    def tie_of(self, interface: Interface) -> Tie:
+        return interface.tie or self.tie
+
+
+def recipe(body: Body, options: Section, settings: Settings) -> str:
+    """Canonical JSON, in SI. The part's place in the machine (frame, joint it travels with) is left out."""
+    content = {
+        "version": VERSION,
+        "reducer": body.reducer,
+        "source": body.source,
+        "units": body.units,
+        "options": _plain(options),
+        "interfaces": {name: _interface(each, settings) for name, each in body.interfaces.items()},
+        "order": list(body.interfaces),
+        "clamped": sorted(body.clamped),
+        "grounded": body.grounded,
+        "modes": settings.modes,
+    }
+    return json.dumps(content, sort_keys=True, separators=(",", ":"))
+
+
+def fingerprint(text: str) -> str:
+    """The first twelve hexadecimal digits of the SHA-256 of a recipe."""
+    return hashlib.sha256(text.encode()).hexdigest()[:12]
+
+
+def file_hash(path: Path) -> str:
+    """SHA-256 of a file's content."""
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def differences(wanted: str, stored: str) -> list[str]:
+    """Entries in which two recipes differ, such as ``modes: 3, stored 5``."""
+    new, old = dict(_leaves(json.loads(wanted))), dict(_leaves(json.loads(stored)))
+    places = sorted(new.keys() | old.keys())
+    return [
+        f"{place}: {new.get(place, 'nothing')}, stored {old.get(place, 'nothing')}"
+        for place in places
+        if new.get(place) != old.get(place)
+    ]
+
+
+def _interface(interface: Interface, settings: Settings) -> dict[str, Any]:
+    content: dict[str, Any] = _plain(interface)
+    content["coupling"] = settings.coupling_of(interface)
+    if interface.members:
+        content["tie"] = settings.tie_of(interface)
+    if interface.travel is not None:
+        del content["travel"]["joint"]
+    return content
+
+
+def _plain(value: Any) -> Any:
+    """Sections, tuples and quantities as JSON has them; numbers to twelve digits, so that units do not matter."""
+    if isinstance(value, Section):
+        return {
+            name: _plain(getattr(value, name))
+            for name, info in type(value).model_fields.items()
+            if getattr(value, name) != info.get_default(call_default_factory=True)
+        }
+    if isinstance(value, Mapping):
+        return {str(name): _plain(each) for name, each in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(each) for each in value]
+    if isinstance(value, float):
+        return float(f"{value:.12g}")
+    return value
+
+
+def _leaves(value: Any, place: str = "") -> Iterator[tuple[str, Any]]:
+    if isinstance(value, dict):
+        for name, each in value.items():
+            yield from _leaves(each, f"{place}.{name}" if place else name)
+    else:
+        yield place, value

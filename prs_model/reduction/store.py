@@ -1,0 +1,82 @@
+"""Stored super-elements: found by their recipe, used as long as the part file has not changed."""
+
+from __future__ import annotations
+
+import logging
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..errors import PartFileError
+from . import storage
+from .recipe import differences, file_hash, fingerprint
+from .super_element import SuperElement
+from .travelling import TravellingElement
+
+logger = logging.getLogger("prs_model")
+
+Element = SuperElement | TravellingElement
+
+
+@dataclass(frozen=True)
+class StoredPart:
+    """Where the super-element of one recipe is kept. folder: the store; source: the part file it was made from."""
+
+    folder: Path
+    stem: str
+    recipe: str
+    source: Path
+
+    @property
+    def path(self) -> Path:
+        return self.folder / f"{self.stem}-{fingerprint(self.recipe)}.npz"
+
+    def find(self) -> Element | None:
+        """The stored element, or None when there is none or the part file has changed since.
+
+        Raises PartFileError when the file is damaged, or when there is neither a stored element nor a part file.
+        """
+        if not self.path.exists():
+            if not self.source.exists():
+                raise PartFileError(self.source, self._nowhere())
+            return None
+        element = storage.load(self.path)
+        if self.source.exists() and provenance(element).get("source_sha256") != file_hash(self.source):
+            logger.info("%s: %s has changed since %s was made from it", self.stem, self.source.name, self.path.name)
+            return None
+        return element
+
+    def keep(self, element: Element) -> None:
+        """Store an element. Where the store cannot be written, the next run reduces the part again."""
+        try:
+            storage.save(element, self.path)
+        except PartFileError as error:
+            logger.warning("%s: not stored: %s", self.stem, error)
+
+    def _nowhere(self) -> str:
+        sentences = [f"there is no such file, and {self.folder} holds no '{self.path.name}' reduced from it"]
+        for path in sorted(self.folder.glob(f"{self.stem}-*.npz")):
+            stored = provenance(storage.load(path)).get("recipe", "{}")
+            sentences.append(f"'{path.name}' there differs in {'; '.join(differences(self.recipe, stored))}")
+        sentences.append(self._remedy())
+        return "; ".join(sentences)
+
+    def _remedy(self) -> str:
+        machine = self.folder.parent
+        if (machine / "rebuild.py").exists():
+            return f"make it with: {rebuild_command(machine)}"
+        return "put the part file there, correct 'source', or go back to the settings it was reduced with"
+
+
+def provenance(element: Element) -> dict[str, str]:
+    """Where an element came from; a travelling one's is that of its first station."""
+    first = element if isinstance(element, SuperElement) else element.elements[0]
+    return dict(first.provenance)
+
+
+def rebuild_command(machine: Path) -> str:
+    """The command that runs a machine folder's own rebuild.py, as a module when the folder is in a package."""
+    module, folder = ["rebuild"], machine.resolve()
+    while (folder / "__init__.py").exists():
+        module.insert(0, folder.name)
+        folder = folder.parent
+    return f"python -m {'.'.join(module)}" if len(module) > 1 else f"python {machine / 'rebuild.py'}"

@@ -1,0 +1,1 @@
+"""Reducer plug-ins that ship with prs-model: one format or method per file."""
