@@ -38,7 +38,7 @@ def constrained_solver(stiffness: csr_array, constraints: csr_array, rigid: Floa
 
     def constrained(f: FloatArray, g: FloatArray) -> FloatArray:
         free = solve(f)
-        unknown = np.linalg.solve(small, np.concatenate([g - constraints @ free, rigid.T @ f]))
+        unknown = np.linalg.solve(small, np.concatenate([g - constraints @ free, scale * (rigid.T @ f)]))
         return np.asarray(free - response @ (unknown[:m] / scale) + rigid @ unknown[m:])
 
     return constrained

@@ -1,0 +1,129 @@
+"""Solids of one or several isotropic materials from a mesh of tetrahedra, in any format that meshio reads."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterator
+from difflib import get_close_matches
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, model_validator
+from pydantic_core import PydanticCustomError
+from scipy.sparse import csr_array
+
+from prs_model.description.quantity import Density, Number, Pressure
+from prs_model.description.schema import Section
+from prs_model.description.units import Dimension
+from prs_model.errors import PartFileError
+from prs_model.finite_elements import FiniteElementModel
+from prs_model.plugins import PartRequest, Reducer
+
+from .mesh_file import TetrahedralMesh, read_mesh
+from .tetrahedra import Material, assemble, face_areas, outer_faces
+
+IntArray = NDArray[np.int64]
+
+logger = logging.getLogger("prs_model")
+
+
+class MaterialOptions(Section):
+    """Isotropic elasticity: Young's modulus, Poisson's ratio, density."""
+
+    E: Pressure
+    nu: Number
+    density: Density
+
+    @model_validator(mode="after")
+    def _stable(self) -> MaterialOptions:
+        if not -1.0 < self.nu < 0.5:
+            raise PydanticCustomError("nu", f"found nu = {self.nu:g}, expected more than -1 and less than 0.5")
+        return self
+
+
+class SolidOptions(Section):
+    """One material for the whole part, or one for each named volume of the mesh."""
+
+    material: MaterialOptions | None = None
+    materials: dict[str, MaterialOptions] = Field(default={})
+
+    @model_validator(mode="after")
+    def _one_of_them(self) -> SolidOptions:
+        if (self.material is None) == (not self.materials):
+            raise PydanticCustomError("material", "found both or neither, expected 'material' or 'materials'")
+        return self
+
+
+class SolidReducer(Reducer):
+    description: ClassVar[str] = "solid from a tetrahedral mesh (gmsh and others through meshio), ten-node elements"
+    Options: ClassVar[type[Section]] = SolidOptions
+
+    def read(self, part: PartRequest) -> FiniteElementModel:
+        """Assemble the mesh; named groups of it become node sets, surfaces with their areas as weights."""
+        if part.source is None or not isinstance(part.options, SolidOptions):
+            raise TypeError("a solid needs its source and SolidOptions")
+        if part.units is None:
+            raise PartFileError(
+                part.source, f"bodies.{part.name}.units: found nothing, expected the mesh's, such as 'mm-N-tonne-s'"
+            )
+        return solid_model(read_mesh(part.source), part.options, Dimension(length=1).factor(part.units))
+
+
+def solid_model(mesh: TetrahedralMesh, options: SolidOptions, scale: float = 1.0) -> FiniteElementModel:
+    """The finite-element model of a mesh whose lengths are `scale` m. Raises PartFileError, MissingExtraError."""
+    if mesh.elements.shape[1] == 4:
+        logger.warning(
+            "%s: four-node tetrahedra are far too stiff in bending; mesh the part with ten-node ones", mesh.source
+        )
+    points = mesh.points * scale
+    size = 3 * len(points)
+    stiffness, mass = csr_array((size, size)), csr_array((size, size))
+    for elements, material in _by_material(mesh, options):
+        try:
+            k, m = assemble(points, elements, material)
+        except ValueError as error:
+            raise PartFileError(mesh.source, str(error)) from error
+        stiffness, mass = stiffness + k, mass + m
+    nodes = np.arange(len(points))
+    return FiniteElementModel(
+        stiffness=stiffness,
+        mass=mass,
+        coordinates=points,
+        node_ids=mesh.labels,
+        dofs=np.column_stack([np.repeat(nodes, 3), np.tile(np.arange(3), len(points))]),
+        node_sets={name: np.unique(cells) for name, cells in mesh.groups.items()},
+        set_weights={
+            name: face_areas(points, cells)[np.unique(cells)]
+            for name, cells in mesh.groups.items()
+            if name in mesh.surfaces
+        },
+        triangles=outer_faces(mesh.elements),
+        provenance={"elements": f"{len(mesh.elements)} tetrahedra of {mesh.elements.shape[1]} nodes"},
+    )
+
+
+def _by_material(mesh: TetrahedralMesh, options: SolidOptions) -> Iterator[tuple[IntArray, Material]]:
+    """Elements with their material. Raises PartFileError for an unknown volume, or elements of none or of two."""
+    if options.material is not None:
+        yield mesh.elements, _material(options.material)
+        return
+    given = np.zeros(len(mesh.elements), dtype=int)
+    for name, material in options.materials.items():
+        if name not in mesh.volumes:
+            known = ", ".join(mesh.volumes) or "none (the mesh names no volumes)"
+            close = get_close_matches(name, list(mesh.volumes), n=1)
+            hint = f"; did you mean '{close[0]}'?" if close else ""
+            raise PartFileError(mesh.source, f"options.materials: found volume '{name}', expected one of {known}{hint}")
+        given[mesh.volumes[name]] += 1
+        yield mesh.elements[mesh.volumes[name]], _material(material)
+    if np.any(given != 1):
+        missing, twice = np.count_nonzero(given == 0), np.count_nonzero(given > 1)
+        raise PartFileError(
+            mesh.source,
+            f"options.materials: {missing} elements have no material and {twice} more than one, of {len(given)}",
+        )
+
+
+def _material(options: MaterialOptions) -> Material:
+    return Material(float(options.E), float(options.nu), float(options.density))
