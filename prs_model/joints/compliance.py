@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.linalg import block_diag, null_space, orth
@@ -20,7 +21,7 @@ _RANK_TOLERANCE = 1e-10
 _ROUND_OFF = 1e-14
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class JointCompliance:
     """Constraint-wrench basis W (6, m) [N, N m per unit] and compliance C (m, m) on it [m/N, rad/(N m)]."""
 
@@ -39,14 +40,18 @@ class JointCompliance:
     @property
     def stiffness(self) -> FloatArray:
         """K = W C^+ W^T (6, 6): the elastic directions, zero along free and rigid ones."""
-        inverse, _ = _split(self.compliance)
+        inverse, _ = self._halves
         return self.wrenches @ inverse @ self.wrenches.T
 
     @property
     def rigid_wrenches(self) -> FloatArray:
         """Wrenches (6, r) whose directions are rigid: rigid_wrenches^T d = 0."""
-        _, rigid = _split(self.compliance)
+        _, rigid = self._halves
         return self.wrenches @ rigid
+
+    @cached_property
+    def _halves(self) -> tuple[FloatArray, FloatArray]:
+        return _split(self.compliance)
 
 
 def along_axes(compliances: dict[int, float]) -> JointCompliance:

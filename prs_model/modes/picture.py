@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import os
 import tempfile
+from dataclasses import dataclass
 from math import ceil
 from pathlib import Path
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -33,63 +35,73 @@ def check_picture_file(path: Path) -> None:
 def draw_modes(modes: Modes, path: Path, title: str = "") -> None:
     """Draw every mode of `modes` into one PNG, SVG or PDF file.
 
-    Colour is the displacement relative to the largest of the mode, drawn enlarged over the shape at rest (grey).
+    Colour is the displacement relative to the largest of the mode, drawn enlarged over the shape at rest (grey);
+    a part without a picture surface is drawn as lines between its nodes.
     The file appears only when it is complete. Raises PrsError or MissingExtraError.
     """
     check_picture_file(path)
-    figure_class, poly_class, map_colours, colour_map = _matplotlib()
-    bodies = [_BodyPicture(modes, name) for name in modes.system.elements]
+    plt = _matplotlib()
+    bodies = [_body_picture(modes, name) for name in modes.system.elements]
     points = np.vstack([body.points for body in bodies])
     low, high = points.min(axis=0), points.max(axis=0)
-    size = float(np.max(high - low))
     count = modes.shapes.shape[1]
     columns = min(count, 4)
-    figure = figure_class(figsize=(3.6 * columns, 4.4 * ceil(count / columns)), layout="constrained")
+    figure = plt.Figure(figsize=(3.6 * columns, 4.4 * ceil(count / columns)), layout="constrained")
     for k, character in enumerate(modes.characters()):
         axes = figure.add_subplot(ceil(count / columns), columns, k + 1, projection="3d")
         largest = max(float(np.linalg.norm(body.displacements[k], axis=1).max()) for body in bodies) or 1.0
         for body in bodies:
-            moved = body.points + body.displacements[k] * (_AMPLITUDE * size / largest)
-            amplitude = np.linalg.norm(body.displacements[k], axis=1) / largest
-            axes.add_collection3d(
-                poly_class(
-                    body.points[body.triangles], facecolor="none", edgecolor=(0.5, 0.5, 0.5, 0.08), linewidth=0.2
-                )
-            )
-            faces = colour_map(amplitude[body.triangles].mean(axis=1))
-            axes.add_collection3d(poly_class(moved[body.triangles], facecolor=faces, edgecolor="none", shade=True))
+            moved = body.points + body.displacements[k] * (_AMPLITUDE * float(np.max(high - low)) / largest)
+            colours = plt.colours(np.linalg.norm(body.displacements[k], axis=1)[body.cells].mean(axis=1) / largest)
+            for drawn in (body.at_rest(plt), body.displaced(plt, moved, colours)):
+                axes.add_collection3d(drawn)
         _frame(axes, low, high)
         axes.set_title(f"mode {k + 1}: {modes.frequencies[k]:.1f} Hz\n{character.group} {character.motion}", fontsize=9)
-    bar = figure.colorbar(map_colours, ax=figure.axes, orientation="horizontal", shrink=0.3, aspect=40, pad=0.01)
+    bar = figure.colorbar(plt.scale, ax=figure.axes, orientation="horizontal", shrink=0.3, aspect=40, pad=0.01)
     bar.set_label("displacement / largest displacement of the mode", fontsize=8)
     figure.suptitle(title)
     _write(figure, path)
 
 
+@dataclass(frozen=True)
 class _BodyPicture:
-    """A body's picture surface in the world, and its displacements (p, 3) in each mode."""
+    """A body in the world: points (p, 3), triangles (t, 3) or lines (t, 2) between them, displacements (k, p, 3)."""
 
-    def __init__(self, modes: Modes, name: str):
-        element, placement = modes.system.elements[name], modes.system.placements[name]
-        if element.surface is not None:
-            local, self.triangles = element.surface.points, element.surface.triangles
-            recovery = np.asarray(element.surface.recovery, dtype=float)
-        else:
-            local, self.triangles = _star(element.positions)
-            recovery = element.motions[:, :3, :]
-            if len(local) > len(element.positions):
-                recovery = np.concatenate([recovery, recovery.mean(axis=0, keepdims=True)])
-        rotation = placement.rotation
-        self.points = local @ rotation.T + placement.translation
-        moved = np.einsum("pin,nk->kpi", recovery, modes.body_shapes(name))
-        self.displacements = moved @ rotation.T
+    points: FloatArray
+    cells: IntArray
+    displacements: FloatArray
+
+    def at_rest(self, plt: SimpleNamespace) -> Any:
+        """The undisplaced body, faint."""
+        if self.cells.shape[1] == 2:
+            return plt.Lines(self.points[self.cells], colors=(0.5, 0.5, 0.5, 0.4), linewidths=0.6)
+        return plt.Faces(self.points[self.cells], facecolors="none", edgecolors=(0.5, 0.5, 0.5, 0.08), linewidths=0.2)
+
+    def displaced(self, plt: SimpleNamespace, moved: FloatArray, colours: FloatArray) -> Any:
+        """The body where the mode takes it."""
+        if self.cells.shape[1] == 2:
+            return plt.Lines(moved[self.cells], colors=colours, linewidths=2.0)
+        return plt.Faces(moved[self.cells], facecolors=colours, edgecolors="none", shade=True)
 
 
-def _star(nodes: FloatArray) -> tuple[FloatArray, IntArray]:
-    """Triangles between a body's nodes, or lines from one node, where there is no surface to draw."""
-    points = np.vstack([nodes, nodes.mean(axis=0)]) if len(nodes) > 2 else nodes
-    last, ring = len(points) - 1, np.arange(len(nodes))
-    return points, np.column_stack([ring, np.roll(ring, -1), np.full(len(ring), last)])
+def _body_picture(modes: Modes, name: str) -> _BodyPicture:
+    element, placement = modes.system.elements[name], modes.system.placements[name]
+    if element.surface is not None:
+        points, cells = element.surface.points, np.asarray(element.surface.triangles)
+        recovery = np.asarray(element.surface.recovery, dtype=float)
+    else:
+        points, cells, recovery = _star(element.positions, element.motions[:, :3])
+    displacements = np.einsum("pin,nk->kpi", recovery, modes.body_shapes(name))
+    rotation = placement.rotation
+    return _BodyPicture(points @ rotation.T + placement.translation, cells, displacements @ rotation.T)
+
+
+def _star(nodes: FloatArray, motions: FloatArray) -> tuple[FloatArray, IntArray, FloatArray]:
+    """Lines from every node to the middle of them all."""
+    points = np.vstack([nodes, nodes.mean(axis=0)])
+    recovery = np.concatenate([motions, motions.mean(axis=0, keepdims=True)])
+    ring = np.arange(len(nodes))
+    return points, np.column_stack([ring, np.full(len(ring), len(ring))]), recovery
 
 
 def _frame(axes: Any, low: FloatArray, high: FloatArray) -> None:
@@ -113,12 +125,18 @@ def _write(figure: Any, path: Path) -> None:
         Path(name).unlink(missing_ok=True)
 
 
-def _matplotlib() -> tuple[Any, Any, Any, Any]:
+def _matplotlib() -> SimpleNamespace:
     try:
         from matplotlib import colormaps
         from matplotlib.cm import ScalarMappable
         from matplotlib.figure import Figure
-        from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+        from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
     except ImportError as error:
         raise MissingExtraError("matplotlib", "plot", "drawing mode shapes") from error
-    return Figure, Poly3DCollection, ScalarMappable(cmap="viridis"), colormaps["viridis"]
+    return SimpleNamespace(
+        Figure=Figure,
+        Faces=Poly3DCollection,
+        Lines=Line3DCollection,
+        scale=ScalarMappable(cmap="viridis"),
+        colours=colormaps["viridis"],
+    )

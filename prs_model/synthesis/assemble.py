@@ -41,11 +41,12 @@ def assemble(
     motions, constraints = [], [np.zeros((0, size))]
     for spring in _all_springs(description, configuration):
         rows, displacement = ends.relative_displacement(spring)
-        motions.append(SpringMotion(spring.joint, spring.interface, rows, displacement, spring.law.stiffness))
-        stiffness[np.ix_(rows, rows)] += displacement.T @ spring.law.stiffness @ displacement
-        rigid = np.zeros((spring.law.rigid_wrenches.shape[1], size))
-        rigid[:, rows] = spring.law.rigid_wrenches.T @ displacement
-        constraints.append(rigid)
+        motion = SpringMotion(spring.joint, spring.interface, rows, displacement, spring.law.stiffness)
+        motions.append(motion)
+        stiffness[np.ix_(rows, rows)] += displacement.T @ motion.stiffness @ displacement
+        rigid = spring.law.rigid_wrenches.T @ displacement
+        constraints.append(np.zeros((len(rigid), size)))
+        constraints[-1][:, rows] = rigid
 
     expansion, kept = independent_coordinates(np.vstack(constraints))
     mass, stiffness = _project(mass, expansion), _project(stiffness, expansion)
