@@ -51,8 +51,11 @@ class Machine:
         """The super-element of every body, constant in its body frame."""
         from .reduction import build_part
 
-        file, folder = self.description.file, self.description.folder
-        return {name: build_part(name, body, file.reduction, folder) for name, body in self.description.bodies.items()}
+        file, folder, stems = self.description.file, self.description.folder, self.description.stems
+        return {
+            name: build_part(name, body, file.reduction, folder, stem=stems[name])
+            for name, body in self.description.bodies.items()
+        }
 
     def configuration(self, **pose: float) -> Configuration:
         """The configuration at a pose [m, rad]; coordinates left out take their reference values.
