@@ -62,13 +62,14 @@ def _check_name(subject: Subject, place: Place, name: str) -> None:
 
 
 def _check_placeholders(subject: Subject, place: Place, raw: Any, allowed: tuple[str, ...]) -> None:
+    symmetry = subject.file.symmetry
     for where, text in _texts(place, raw):
         for group in _PLACEHOLDER.findall(text):
             if group in allowed:
                 continue
-            advice = f"add 'per: {group}'" if group in subject.file.symmetry else "write the name out"
             known = listed(f"<{name}>" for name in allowed)
-            subject.problems.add(where, f"found the placeholder <{group}>, expected {known} here; {advice}")
+            advice = "" if allowed else f"; add 'per: {group}'" if group in symmetry else "; write the name out"
+            subject.problems.add(where, f"found the placeholder <{group}>, expected {known} here{advice}")
 
 
 def _texts(place: Place, raw: Any) -> Iterator[tuple[Place, str]]:

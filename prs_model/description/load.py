@@ -98,22 +98,25 @@ def _validated(raw: Any, problems: Problems) -> MachineFile | None:
             (), f"found {shown(raw)}, expected the sections of a machine (name, urdf, task, bodies, joints ..)"
         )
         return None
-    context = {"units": _units(raw.get("units"))}
+    units = _units(raw.get("units"))
+    context = {"units": units or Units()}
     try:
         return MachineFile.model_validate(raw, context=context)
     except ValidationError as error:
         report(error, MachineFile, raw, problems)
+    if units is None:
+        return None  # no number of the file can be compared with another
     try:
         return MachineFile.model_validate(_sound(raw, problems), context=context)
     except ValidationError:
         return None
 
 
-def _units(raw: Any) -> Units:
+def _units(raw: Any) -> Units | None:
     try:
         return Units.model_validate({} if raw is None else raw)
     except ValidationError:
-        return Units()  # reported with the rest of the file
+        return None  # told with the rest of the file
 
 
 def _sound(raw: Mapping[str, Any], problems: Problems) -> dict[str, Any]:

@@ -10,7 +10,7 @@ from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
 from .fields import known_fields, types_at, without_tags
-from .problems import Place, Problems, did_you_mean, listed
+from .problems import Place, Problems, closest, did_you_mean, listed
 
 _EXPECTED = {
     "string_type": "text",
@@ -27,8 +27,12 @@ _EXPECTED = {
 
 def report(error: ValidationError, root: type[BaseModel], raw: Any, problems: Problems, base: Place = ()) -> None:
     """Add every error of a validation of `raw` against `root`; `base` is the place of `raw` in the file."""
-    for details in error.errors(include_url=False):
+    errors = error.errors(include_url=False)
+    misspelt = {_meant(details, root) for details in errors if details["type"] == "extra_forbidden"}
+    for details in errors:
         location = tuple(details["loc"])
+        if details["type"] == "missing" and location in misspelt:
+            continue  # told where the misspelt key is
         missing = details["type"] == "missing"
         place = (*base, *without_tags(raw, location, missing=missing))
         message = _message(details, root, location)
@@ -61,6 +65,13 @@ def _message(details: ErrorDetails, root: type[BaseModel], location: Place) -> s
         return f"found {shown(found)}, expected {_EXPECTED[kind]}{_advice(kind, found)}"
     message = details["msg"]
     return message if message.startswith("found ") else f"found {shown(found)}; {message}"
+
+
+def _meant(details: ErrorDetails, root: type[BaseModel]) -> Place:
+    """Where the entry would be that an unknown key is a misspelling of."""
+    *section, name = details["loc"]
+    close = closest(name, known_fields(root, tuple(section)))
+    return (*section, close) if close else ()
 
 
 def _choices(root: type[BaseModel], location: Place) -> tuple[Any, ...]:

@@ -27,10 +27,15 @@ def line_of(place: Place, lines: Mapping[Place, int | None]) -> int | None:
     return None
 
 
+def closest(name: object, known: Iterable[str]) -> str | None:
+    """The known name that is spelt most like `name`, if one is close."""
+    return next(iter(get_close_matches(str(name), list(known), n=1)), None)
+
+
 def did_you_mean(name: object, known: Iterable[str]) -> str:
     """``; did you mean 'x'?`` when one of the known names is close, else nothing."""
-    close = get_close_matches(str(name), list(known), n=1)
-    return f"; did you mean '{close[0]}'?" if close else ""
+    close = closest(name, known)
+    return f"; did you mean '{close}'?" if close else ""
 
 
 def listed(known: Iterable[str], limit: int = 12) -> str:
@@ -65,7 +70,11 @@ class Problems:
         return any(place[: len(other)] == other[: len(place)] for other in self._found)
 
     def in_file_order(self) -> list[Problem]:
-        return sorted(self._found.values(), key=lambda problem: problem.line or 0)
+        """The problems by line. What an alias repeats elsewhere is told once, where it is written."""
+        once: dict[object, Problem] = {}
+        for place, problem in self._found.items():
+            once.setdefault((problem.line, place[-1:], problem.message) if problem.line else place, problem)
+        return sorted(once.values(), key=lambda problem: problem.line or 0)
 
     def raise_if_any(self, more: Iterable[Problem] = ()) -> None:
         """Raise DescriptionError with everything found here and in other files."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from .expand import instances, substituted
+from .expand import E, instances, substituted
 from .problems import Place, Problems, not_known
 from .schema import Body, Closure, Joint, MachineFile
 from .urdf import Urdf
@@ -26,21 +26,21 @@ class Subject:
 
     def each_joint(self) -> Iterator[tuple[Place, Joint]]:
         """Every instance of every joint, with the place of its entry."""
-        for name, joint in self.file.joints.items():
-            for instance in instances(name, joint.per, self.file.symmetry):
-                yield ("joints", name), substituted(joint, instance.replacements)
+        return self._each("joints", self.file.joints)
 
     def each_body(self) -> Iterator[tuple[Place, Body]]:
         """Every instance of every body, with the place of its entry."""
-        for name, body in self.file.bodies.items():
-            for instance in instances(name, body.per, self.file.symmetry):
-                yield ("bodies", name), substituted(body, instance.replacements)
+        return self._each("bodies", self.file.bodies)
 
     def each_closure(self) -> Iterator[tuple[Place, Closure]]:
         """Every instance of every closure, with the place of its entry."""
-        for name, closure in self.file.closures.items():
-            for instance in instances(name, closure.per, self.file.symmetry):
-                yield ("closures", name), substituted(closure, instance.replacements)
+        return self._each("closures", self.file.closures)
+
+    def _each(self, group: str, entries: Mapping[str, E]) -> Iterator[tuple[Place, E]]:
+        for name, entry in entries.items():
+            if entry.per is None or entry.per in self.file.symmetry:
+                for instance in instances(name, entry.per, self.file.symmetry):
+                    yield (group, name), substituted(entry, instance.replacements)
 
     def check_link(self, place: Place, name: str) -> bool:
         """Whether the URDF has this link; a problem if not."""

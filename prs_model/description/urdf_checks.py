@@ -185,7 +185,7 @@ def check_tree(robot: Element, links: Mapping[str, Any], reader: Reader) -> str:
     above: dict[str, Element] = {}
     for joint in robot.all("joint"):
         _check_ends(joint, above, links, reader)
-    if len(reader.problems) > before:
+    if len(reader.problems) > before or "" in links:
         return ""
     return _root(robot, links, above, reader)
 
