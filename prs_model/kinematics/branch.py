@@ -8,6 +8,7 @@ always; where there is doubt, the pose is approached in small steps instead, and
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -55,15 +56,20 @@ class Branch:
 
     def _in_doubt(self, q: FloatArray, solved: BoolArray, targets: FloatArray) -> BoolArray:
         doubt = np.zeros(len(q), dtype=bool)
-        reference = self._jacobian(self.q[None], self.targets[None])[0]
         turns = np.abs(q[solved] - self.q) * self.equations.tree.revolute
-        doubt[solved] = agreement(reference, self._jacobian(q[solved], targets[solved])) < _LEAST_AGREEMENT
+        doubt[solved] = agreement(self._reference_jacobian, self._jacobian(q[solved], targets[solved])) < _LEAST_AGREEMENT
         doubt[solved] |= np.max(turns, axis=1, initial=0.0) > _LARGEST_TURN
         return doubt
 
+    @cached_property
+    def _reference_jacobian(self) -> FloatArray:
+        return self._jacobian(self.q[None], self.targets[None])[0]
+
     def follow(self, targets: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Move from the reference to targets (N, t) in steps that halve where Newton fails, a joint jumps or a
-        singularity is near. Returns the last joint values (N, n) and the share of the way made (N,), 1 if all of it.
+        """Move from the reference to targets (N, t) in small steps.
+
+        A step is halved where Newton fails, a joint jumps or a singularity is near. Returns the last joint values
+        (N, n) and the share of the way made (N,): 1 if the target is reached.
         """
         count = len(targets)
         q, share, step = np.tile(self.q, (count, 1)), np.zeros(count), np.full(count, _FIRST_STEP)

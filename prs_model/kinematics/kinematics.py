@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 import pinocchio as pin
@@ -80,9 +80,9 @@ class Kinematics:
         """As `solve_batch`, by Newton's method whatever the task brings."""
         poses = self._checked(poses)
         q, share = np.empty((len(poses), self.tree.size)), np.ones(len(poses))
-        for some in np.array_split(np.arange(len(poses)), 1 + len(poses) // _CHUNK):
+        for some in _chunks(len(poses)):
             targets = self.task.targets(poses[some])
-            start = np.tile(self.branch.q, (len(some), 1))
+            start = np.tile(self.branch.q, (len(targets), 1))
             q[some], share[some] = self.branch.settle(*newton(self.equations, start, targets), targets)
         return self._followed(poses, q, share)
 
@@ -100,7 +100,7 @@ class Kinematics:
         missed = np.flatnonzero(share < 1.0)
         errors = {int(i): self.reach.cut_off(poses[i], q[i], share[i]) for i in missed}
         q[missed] = np.nan
-        return self._result(poses, q, errors)
+        return self._result(poses, q, self._residual(poses, q), errors)
 
     def _closed_form(self, poses: FloatArray) -> Configurations:
         q = self.task.closed_form(poses)
@@ -109,30 +109,36 @@ class Kinematics:
         missed = np.flatnonzero(np.isnan(q).any(axis=1))
         errors = {int(i): self.reach.no_closed_form(poses[i], q[i]) for i in missed}
         q[missed] = np.nan
-        result = self._result(poses, q, errors)
-        self._check_closed_form(result)
-        return result
+        residual = self._residual(poses, q)
+        self._check_closed_form(residual)
+        return self._result(poses, q, residual, errors)
 
-    def _result(self, poses: FloatArray, q: FloatArray, errors: dict[int, UnreachablePoseError]) -> Configurations:
+    def _residual(self, poses: FloatArray, q: FloatArray) -> FloatArray:
+        """Closure rows, then task rows (N, m), in absolute value; infinite where there is no configuration."""
+        rows = np.empty((len(q), self.equations.loop_rows + len(self.pose_names)))
+        for some in _chunks(len(q)):
+            frames = self.tree.forward(q[some])
+            rows[some] = self.equations.residual(frames, self.task.targets(poses[some]))
+        return np.nan_to_num(np.abs(rows), nan=np.inf)
+
+    def _result(
+        self, poses: FloatArray, q: FloatArray, residual: FloatArray, errors: Mapping[int, UnreachablePoseError]
+    ) -> Configurations:
         """Configurations, with those that pass a joint limit added to the errors."""
         beyond = np.flatnonzero(self.reach.excess(q).any(axis=1))
         limits = {int(i): self.reach.beyond_limits(poses[i], q[i]) for i in beyond}
-        errors = errors | {i: error for i, error in limits.items() if error is not None}
-        gaps = np.abs(self.equations.closure_residual(self.tree.forward(q)))
-        residual = np.max(np.nan_to_num(gaps, nan=np.inf), axis=1, initial=0.0)
-        return Configurations(self.pose_names, poses, q, residual, errors, self.tree)
+        errors = {**errors, **{i: error for i, error in limits.items() if error is not None}}
+        gaps = np.max(residual[:, : self.equations.loop_rows], axis=1, initial=0.0)
+        return Configurations(self.pose_names, poses, q, gaps, errors, self.tree)
 
-    def _check_closed_form(self, result: Configurations) -> None:
+    def _check_closed_form(self, residual: FloatArray) -> None:
         """A closed form whose loops stay open was made for another geometry than the URDF's."""
-        found = np.flatnonzero(np.isfinite(result.closure_residual))
-        targets = self.task.targets(result.poses[found])
-        residual = np.abs(self.equations.residual(self.tree.forward(result.q[found]), targets))
-        gap = float(np.max(residual, initial=0.0))
+        gap = float(np.max(residual, where=np.isfinite(residual), initial=0.0))
         if gap > _CLOSED_FORM_TOLERANCE:
             message = (
                 f"found a closed form that leaves the loops or the pose open by {gap:.3g} m or rad, expected "
-                f"{_CLOSED_FORM_TOLERANCE:g}; the URDF is not of the geometry this task is made for: correct it, or use "
-                "a task without closed form"
+                f"{_CLOSED_FORM_TOLERANCE:g}; the URDF is not of the geometry this task is made for: correct it, "
+                "or use a task without closed form"
             )
             raise self.description.problem(("task", "kind"), message)
 
@@ -166,3 +172,7 @@ class Kinematics:
             i, k = wrong[0]
             raise PrsError(f"pose {i}: found {poses[i, k]} for {self.pose_names[k]}, expected a finite number [m, rad]")
         return poses
+
+
+def _chunks(count: int) -> Iterator[slice]:
+    return (slice(start, start + _CHUNK) for start in range(0, count, _CHUNK))

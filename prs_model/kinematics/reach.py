@@ -93,7 +93,7 @@ class Reach:
     def _stand(self, q: FloatArray, j: int) -> str:
         dimension = self._dimension(j)
         lower, upper = (_in_readable_units(limit, dimension) for limit in (self.tree.lower[j], self.tree.upper[j]))
-        return f"{_in_readable_units(q[j], dimension)}, limits {lower} .. {upper}"
+        return f"{_in_readable_units(q[j], dimension)}, limits {lower.split()[0]} .. {upper}"
 
     def _dimension(self, j: int) -> Dimension:
         return Dimension(angle=1) if self.tree.revolute[j] else Dimension(length=1)

@@ -105,15 +105,12 @@ def _wrong_mobility(equations: Equations, q: FloatArray, target: FloatArray) -> 
             "closures"
         )
     lost = joints - _rank(jacobian)
-    return (
-        None
-        if not lost
-        else (
-            _HERE,
+    if lost:
+        return _HERE, (
             f"found a singular configuration: the pose of task '{kind}' leaves {lost} of the mechanism's "
-            f"{coordinates} degrees of freedom undetermined; choose another reference, or another task",
+            f"{coordinates} degrees of freedom undetermined; choose another reference, or another task"
         )
-    )
+    return None
 
 
 def _rank(matrix: FloatArray) -> int:
