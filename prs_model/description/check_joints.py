@@ -88,9 +88,9 @@ def _check_interface_names(subject: Subject, place: Place, joint: Joint) -> None
     seen: set[str] = set()
     for index, interface in enumerate(joint.interfaces):
         where = (*place, "interfaces", index)
-        if interface.name is None:
-            if known:
-                message = f"found no name, expected the member it acts on ({listed(dict.fromkeys(known))})"
+        if not interface.name:
+            if known or interface.name == "":
+                message = f"found no name, expected one of the members it may act on ({listed(dict.fromkeys(known))})"
                 subject.problems.add((*where, "name"), message)
         elif interface.name in seen:
             message = f"found '{interface.name}' a second time, expected a name of its own for every interface"

@@ -104,8 +104,8 @@ def _validated(raw: Any, problems: Problems) -> MachineFile | None:
         return MachineFile.model_validate(raw, context=context)
     except ValidationError as error:
         report(error, MachineFile, raw, problems)
-    if units is None:
-        return None  # no number of the file can be compared with another
+    if units is None or problems.touches(("symmetry",)):
+        return None  # no number can be compared with another, or no instance be made
     try:
         return MachineFile.model_validate(_sound(raw, problems), context=context)
     except ValidationError:

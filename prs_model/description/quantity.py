@@ -12,6 +12,8 @@ from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from .units import SI, Dimension, Units
 
+LARGEST = 1e100  # beyond any machine; products of such numbers stay finite
+
 Source = Literal["measured", "catalogue", "paper", "assumed", "computed"]
 
 
@@ -70,8 +72,9 @@ class _Field:
             return Quantity(math.inf, source, note)
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise PydanticCustomError("number", f"found {value!r}, expected a number ({unit})")
-        if not math.isfinite(value):
-            raise PydanticCustomError("finite", f"found {value}, expected a finite number ({unit})")
+        if not abs(value) < LARGEST:
+            found = value if isinstance(value, float) else "a very long number"
+            raise PydanticCustomError("finite", f"found {found}, expected a finite number ({unit})")
         if self.positive and value <= 0:
             raise PydanticCustomError("positive", f"found {value:g}, expected a number above zero ({unit})")
         if self.non_negative and value < 0:
@@ -90,7 +93,10 @@ def _unpack(raw: Any, unit: str) -> tuple[Any, Source | None, str | None]:
     source = raw.get("source")
     if source is not None and source not in get_args(Source):
         raise PydanticCustomError("source", f"found source '{source}', expected one of {', '.join(get_args(Source))}")
-    return raw["value"], source, raw.get("note")
+    note = raw.get("note")
+    if note is not None and not isinstance(note, str):
+        raise PydanticCustomError("note", f"found the note {note!r}, expected text; put it in quotes")
+    return raw["value"], source, note
 
 
 Number = Annotated[Quantity, _Field(Dimension())]

@@ -40,7 +40,10 @@ class Section(BaseModel):
 
 
 class Reference(Section):
-    """The configuration from which Newton starts. Pose and joint values are converted when their kind is known."""
+    """The configuration from which Newton starts. A joint's name may hold a placeholder: ``slide_<limb>: 650``.
+
+    Lengths and angles are in the units of the file; MachineDescription has them in SI.
+    """
 
     pose: dict[str, Number]
     joints: dict[str, Number]
@@ -135,7 +138,10 @@ class Interface(Selection):
 
 
 class Body(Section):
-    """One part: the URDF link that carries it, how it is read, and where it is held."""
+    """One part: the URDF link that carries it, how it is read, and where it is held.
+
+    `options` are the reducer's; as written in the file, validated and in SI in a MachineDescription.
+    """
 
     frame: str
     reducer: str
@@ -189,21 +195,15 @@ class DiagonalCompliance(Section):
     note: str | None = None
 
 
+_StiffnessTop = tuple[StiffnessTT, StiffnessTT, StiffnessTT, StiffnessTR, StiffnessTR, StiffnessTR]
+_StiffnessBottom = tuple[StiffnessTR, StiffnessTR, StiffnessTR, StiffnessRR, StiffnessRR, StiffnessRR]
 StiffnessMatrix = tuple[
-    tuple[StiffnessTT, StiffnessTT, StiffnessTT, StiffnessTR, StiffnessTR, StiffnessTR],
-    tuple[StiffnessTT, StiffnessTT, StiffnessTT, StiffnessTR, StiffnessTR, StiffnessTR],
-    tuple[StiffnessTT, StiffnessTT, StiffnessTT, StiffnessTR, StiffnessTR, StiffnessTR],
-    tuple[StiffnessTR, StiffnessTR, StiffnessTR, StiffnessRR, StiffnessRR, StiffnessRR],
-    tuple[StiffnessTR, StiffnessTR, StiffnessTR, StiffnessRR, StiffnessRR, StiffnessRR],
-    tuple[StiffnessTR, StiffnessTR, StiffnessTR, StiffnessRR, StiffnessRR, StiffnessRR],
+    _StiffnessTop, _StiffnessTop, _StiffnessTop, _StiffnessBottom, _StiffnessBottom, _StiffnessBottom
 ]
+_ComplianceTop = tuple[ComplianceTT, ComplianceTT, ComplianceTT, ComplianceTR, ComplianceTR, ComplianceTR]
+_ComplianceBottom = tuple[ComplianceTR, ComplianceTR, ComplianceTR, ComplianceRR, ComplianceRR, ComplianceRR]
 ComplianceMatrix = tuple[
-    tuple[ComplianceTT, ComplianceTT, ComplianceTT, ComplianceTR, ComplianceTR, ComplianceTR],
-    tuple[ComplianceTT, ComplianceTT, ComplianceTT, ComplianceTR, ComplianceTR, ComplianceTR],
-    tuple[ComplianceTT, ComplianceTT, ComplianceTT, ComplianceTR, ComplianceTR, ComplianceTR],
-    tuple[ComplianceTR, ComplianceTR, ComplianceTR, ComplianceRR, ComplianceRR, ComplianceRR],
-    tuple[ComplianceTR, ComplianceTR, ComplianceTR, ComplianceRR, ComplianceRR, ComplianceRR],
-    tuple[ComplianceTR, ComplianceTR, ComplianceTR, ComplianceRR, ComplianceRR, ComplianceRR],
+    _ComplianceTop, _ComplianceTop, _ComplianceTop, _ComplianceBottom, _ComplianceBottom, _ComplianceBottom
 ]
 
 
