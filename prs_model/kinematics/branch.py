@@ -55,15 +55,15 @@ class Branch:
         return q, share
 
     def _in_doubt(self, q: FloatArray, solved: BoolArray, targets: FloatArray) -> BoolArray:
-        doubt = np.zeros(len(q), dtype=bool)
+        likeness = agreement(self._reference_jacobian, self._jacobian(q[solved], targets[solved]))
         turns = np.abs(q[solved] - self.q) * self.equations.tree.revolute
-        doubt[solved] = agreement(self._reference_jacobian, self._jacobian(q[solved], targets[solved])) < _LEAST_AGREEMENT
-        doubt[solved] |= np.max(turns, axis=1, initial=0.0) > _LARGEST_TURN
+        doubt = np.zeros(len(q), dtype=bool)
+        doubt[solved] = (likeness < _LEAST_AGREEMENT) | (np.max(turns, axis=1, initial=0.0) > _LARGEST_TURN)
         return doubt
 
     @cached_property
     def _reference_jacobian(self) -> FloatArray:
-        return self._jacobian(self.q[None], self.targets[None])[0]
+        return np.asarray(self._jacobian(self.q[None], self.targets[None])[0])
 
     def follow(self, targets: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Move from the reference to targets (N, t) in small steps.
