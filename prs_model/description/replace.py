@@ -44,6 +44,11 @@ class _Draft:
     def __init__(self, description: MachineDescription):
         self.file = description.path.name
         self.symmetry = description.file.symmetry
+        self.made: dict[Place, Mapping[str, Any]] = {
+            ("bodies",): description.bodies,
+            ("joints",): description.joints,
+            ("closures",): description.closures,
+        }
         self.raw: dict[str, Any] = dict(description.raw)
         self.lines = dict(description.lines)
         written = {name for group in ("bodies", "joints", "closures") for name in getattr(description.file, group)}
@@ -83,7 +88,8 @@ class _Draft:
         new = is_free(MachineFile, done) and (options or (here == place and isinstance(value, Mapping)))
         if isinstance(entries, Mapping) and (step in entries or step in fields or new):
             return
-        known = list(dict.fromkeys([*(entries if isinstance(entries, Mapping) else ()), *fields]))
+        written = entries if isinstance(entries, Mapping) else ()
+        known = list(dict.fromkeys([*written, *fields, *self.made.get(done, ())]))
         where = f"of {dotted(done)}" if done else "of the file"
         message = f"found no such entry; entries {where} are {listed(known, 30)}{did_you_mean(step, known)}"
         raise self._refuse(dotted(place), message)

@@ -70,6 +70,7 @@ def test_what_may_be_replaced(machine: MachineDescription, path: str, value: Any
     ("path", "value", "words"),
     [
         ("bodies.foo.modes", 5, "did you mean 'foot'"),
+        ("bodies.foot_lft.modes", 5, "did you mean 'foot_left'"),
         ("bodies.foot.modez", 5, "did you mean 'modes'"),
         ("joints.X.interfaces[2].at", [0, 0, 0], "a list of 2"),
         ("joints.X.interface[0].at", [0, 0, 0], "did you mean 'interfaces'"),
