@@ -30,7 +30,10 @@ def box(
     quadratic: bool = True,
     shape: Callable[[FloatArray], FloatArray] = lambda points: points,
 ) -> TetrahedralMesh:
-    """A box from the origin, each cell cut into six tetrahedra. Surfaces x0, x1, y0, y1, z0, z1; volume 'all'."""
+    """A box from the origin, each cell cut into six tetrahedra. Surfaces x0, x1, y0, y1, z0, z1; volume 'all'.
+
+    shape: maps points of the box (n, 3) to where they shall be, mid-side nodes too (so elements may be curved).
+    """
     points, elements = _corners(size, cells)
     faces = outer_faces(elements)
     sides = {
@@ -38,12 +41,11 @@ def box(
         for axis in range(3)
         for end in (0, 1)
     }
-    points = shape(points)
     if quadratic:
         points, elements, faces = _with_midsides(points, elements, faces)
     return TetrahedralMesh(
         source=Path("box.msh"),
-        points=points,
+        points=shape(points),
         labels=np.arange(1, len(points) + 1),
         elements=elements,
         groups={name: faces[chosen] for name, chosen in sides.items()} | {"all": elements},

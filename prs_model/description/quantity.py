@@ -114,6 +114,10 @@ RotationalStiffness = Annotated[Quantity, _Field(Dimension(force=1, length=1), p
 Compliance = Annotated[Quantity, _Field(Dimension(force=-1, length=1), non_negative=True)]
 RotationalCompliance = Annotated[Quantity, _Field(Dimension(force=-1, length=-1), non_negative=True)]
 
+# along or about one axis of a joint: zero transmits nothing
+AxisStiffness = Annotated[Quantity, _Field(Dimension(force=1, length=-1), non_negative=True, rigid=True)]
+AxisRotationalStiffness = Annotated[Quantity, _Field(Dimension(force=1, length=1), non_negative=True, rigid=True)]
+
 # entries of 6x6 matrices, by blocks: translation-translation, translation-rotation, rotation-rotation
 StiffnessTT = Annotated[Quantity, _Field(Dimension(force=1, length=-1))]
 StiffnessTR = Annotated[Quantity, _Field(Dimension(force=1))]

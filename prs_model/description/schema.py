@@ -7,6 +7,8 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
 
 from .quantity import (
+    AxisRotationalStiffness,
+    AxisStiffness,
     Compliance,
     ComplianceRR,
     ComplianceTR,
@@ -170,14 +172,15 @@ class ReductionDefaults(Section):
 
 
 class DiagonalStiffness(Section):
-    """Stiffness along and about the axes of the joint frame; rotations per radian. Free axes are left out."""
+    """Stiffness along and about the axes of the joint frame; rotations per radian. Free axes are left out;
+    zero means that nothing is transmitted (a floating bearing)."""
 
-    ux: Stiffness | None = None
-    uy: Stiffness | None = None
-    uz: Stiffness | None = None
-    rx: RotationalStiffness | None = None
-    ry: RotationalStiffness | None = None
-    rz: RotationalStiffness | None = None
+    ux: AxisStiffness | None = None
+    uy: AxisStiffness | None = None
+    uz: AxisStiffness | None = None
+    rx: AxisRotationalStiffness | None = None
+    ry: AxisRotationalStiffness | None = None
+    rz: AxisRotationalStiffness | None = None
     source: Source | None = None
     note: str | None = None
 

@@ -76,7 +76,8 @@ def elastic_law(law: ElasticLaw, free: int | None) -> JointCompliance:
     if law.rigid:
         return along_axes(dict.fromkeys(constrained, 0.0))
     if isinstance(law.stiffness, DiagonalStiffness):
-        return along_axes({axis: 1.0 / getattr(law.stiffness, AXES[axis]) for axis in constrained})
+        stiffness = {axis: float(getattr(law.stiffness, AXES[axis])) for axis in constrained}
+        return along_axes({axis: 1.0 / k for axis, k in stiffness.items() if k > 0.0})
     if isinstance(law.compliance, DiagonalCompliance):
         return along_axes({axis: float(getattr(law.compliance, AXES[axis])) for axis in constrained})
     if law.stiffness is not None:

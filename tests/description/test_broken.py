@@ -81,7 +81,7 @@ SHAPE = [
     yaml("words for a number", "mass: 900", "mass: heavy", "bodies.bed.options.mass", "found 'heavy'", "(kg)"),
     yaml("unit beside a number", "nut: 5.0e5", "nut: 500 N/um", "joints.X.drive.nut", "expected a number (N/mm)"),
     yaml("negative stiffness", "uz: 6.0e5", "uz: -6.0e5", "joints.X.interfaces[0].stiffness.uz",
-         "above zero (N/mm)"),
+         "zero or more (N/mm)"),
     yaml("two numbers for a point", "at: [100, 0, 0]", "at: [100, 0]", "joints.X.interfaces[0].at",
          "found 2 entries, expected 3"),
     yaml("unknown source", "source: measured", "source: guessed", "bodies.ram.options.mass", "'guessed'", "assumed"),

@@ -4,7 +4,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from prs_model.description.schema import BallScrew
+from prs_model.description.schema import BallScrew, ElasticLaw
 from prs_model.errors import PrsError
 from prs_model.joints import (
     along_axes,
@@ -14,6 +14,7 @@ from prs_model.joints import (
     series,
     series_as_printed,
 )
+from prs_model.joints.springs import elastic_law
 
 BEARING = {0: 1e-9, 1: 1.2e-9, 2: 2e-9, 3: 3e-7, 4: 4e-7}  # free about z
 
@@ -105,3 +106,12 @@ def test_ball_screw_is_softest_between_its_bearings() -> None:
     assert ball_screw_compliance(screw, 0.3) == pytest.approx(ball_screw_compliance(screw, 0.7), rel=1e-12)
     with pytest.raises(PrsError, match="from the front bearing"):
         ball_screw_compliance(screw, 1.2)
+
+
+def test_a_floating_bearing_transmits_nothing_along_its_zero() -> None:
+    """Zero stiffness is no direction at all: rank 4 beside the free axis, no tiny number in its place."""
+    law = ElasticLaw.model_validate(dict(stiffness=dict(ux=1e9, uy=1e9, uz=0.0, rx=1e6, ry="rigid")))
+    joint = elastic_law(law, 5)
+    assert joint.wrenches.shape == (6, 4)
+    np.testing.assert_allclose(np.diag(joint.stiffness), [1e9, 1e9, 0, 1e6, 0, 0], rtol=1e-12)
+    np.testing.assert_allclose(np.abs(joint.rigid_wrenches[:, 0]), np.eye(6)[4])
