@@ -30,9 +30,8 @@ def test_batch_against_pose_by_pose(name: str) -> None:
     some = [dict(zip(kinematics.pose_names, pose, strict=True)) for pose in poses[:100]]
     batch = seconds(lambda: kinematics.newton_batch(poses)) / len(poses)
     single = seconds(lambda: [kinematics.newton(pose) for pose in some]) / len(some)
-    print(
-        f"\n{name}: Newton {1e6 * batch:.1f} us/pose in a batch, {1e6 * single:.0f} us alone, ratio {single / batch:.0f}"
-    )
+    ratio = single / batch
+    print(f"\n{name}: Newton {1e6 * batch:.1f} us/pose in a batch, {1e6 * single:.0f} us alone, ratio {ratio:.0f}")
     if kinematics.has_closed_form:
         closed = seconds(lambda: kinematics.solve_batch(poses)) / len(poses)
         alone = seconds(lambda: [kinematics.solve(pose) for pose in some]) / len(some)
