@@ -31,8 +31,12 @@ class Material:
         return self.E * self.nu / (1.0 + self.nu) / (1.0 - 2.0 * self.nu), self.E / 2.0 / (1.0 + self.nu)
 
 
-def assemble(points: FloatArray, elements: IntArray, material: Material) -> tuple[csr_array, csr_array]:
+def assemble(
+    points: FloatArray, elements: IntArray, material: Material, *, mass_order: int = 6
+) -> tuple[csr_array, csr_array]:
     """K and consistent M, (3 n, 3 n), of elements (e, 4 or 10) over points (n, 3) [m]; rows are 3 node + component.
+
+    mass_order: degree to which the mass is integrated; 4 is exact on straight elements, CalculiX uses 2.
 
     Raises MissingExtraError without scikit-fem, ValueError naming an element that is flat or turned inside out.
     """
@@ -42,7 +46,7 @@ def assemble(points: FloatArray, elements: IntArray, material: Material) -> tupl
         chunk = elements[start : start + CHUNK]
         rows = (3 * chunk[:, :, None] + np.arange(3)).reshape(len(chunk), -1)
         stiffness = stiffness + _scatter(element_stiffness(points[chunk], material), rows, n)
-        mass = mass + _scatter(element_mass(points[chunk], material), rows, n)
+        mass = mass + _scatter(element_mass(points[chunk], material, mass_order), rows, n)
     return stiffness, mass
 
 
@@ -60,9 +64,9 @@ def element_stiffness(corners: FloatArray, material: Material) -> FloatArray:
     return stiffness.reshape(e, 3 * m, 3 * m)
 
 
-def element_mass(corners: FloatArray, material: Material) -> FloatArray:
-    """(e, 3 m, 3 m) for nodes (e, m, 3): int rho u v, with fifteen points (all of positive weight)."""
-    values, _, volumes = _shape(corners, order=6)
+def element_mass(corners: FloatArray, material: Material, order: int = 6) -> FloatArray:
+    """(e, 3 m, 3 m) for nodes (e, m, 3): int rho u v; order 6 has fifteen points of positive weight."""
+    values, _, volumes = _shape(corners, order)
     m = corners.shape[1]
     scalar = material.density * np.einsum("qi,qj,eq->eij", values, values, volumes, optimize=True)
     mass = np.zeros((len(corners), m, 3, m, 3))
