@@ -49,6 +49,7 @@ def craig_bampton(model: FiniteElementModel, ties: Sequence[Tie], n_modes: int) 
     averaged = [averaging_matrix(model, tie) for tie, is_rigid in zip(ties, rigid, strict=True) if not is_rigid]
     constraints = csr_array(vstack(averaged)) if averaged else csr_array((0, model.size))
     interior = np.setdiff1d(np.arange(model.size), tied)
+    _check_one_piece(model, tied)
     if n_modes > len(interior) - constraints.shape[0] - 1:
         raise PartFileError(model.source, f"found {len(interior)} inner DOFs, too few for {n_modes} modes")
     solve = _solver(model, interior, csr_array(constraints[:, interior]), held=len(tied) > 0)
@@ -76,9 +77,23 @@ def _solver(model: FiniteElementModel, interior: IntArray, constraints: csr_arra
     try:
         return constrained_solver(stiffness, constraints, rigid)
     except np.linalg.LinAlgError as error:
-        pieces = connected_components(model.stiffness, directed=False)[0]
-        cause = f"{error}; check that all volumes of the mesh share their nodes and every DOF has stiffness"
-        raise PhysicsError(model.name, "part is in one piece and held", float(pieces), 1.0, cause) from error
+        cause = f"its stiffness is singular ({error}); check that every DOF has stiffness"
+        raise PhysicsError(model.name, "part is held by its interfaces", 0.0, 0.0, cause) from error
+
+
+def _check_one_piece(model: FiniteElementModel, tied: IntArray) -> None:
+    """Raises PhysicsError when a piece of the mesh is joined to nothing: not to the rest, a rigid tie or the ground."""
+    pieces, of_row = connected_components(model.stiffness, directed=False)
+    if pieces == 1:
+        return
+    rigid = model.rigid_body_modes(about=model.coordinates.mean(axis=0))
+    force = np.linalg.norm(model.stiffness @ rigid, axis=1)
+    held = force > 1e-9 * np.linalg.norm(rigid) * abs(model.stiffness).max()
+    held[tied] = True
+    loose = pieces - len(np.unique(of_row[held]))
+    if loose:
+        cause = f"of its {pieces} pieces, {loose} are not held; check that the volumes of the mesh share their nodes"
+        raise PhysicsError(model.name, "pieces of the part", float(pieces), 1.0, cause)
 
 
 def _free_motions(model: FiniteElementModel) -> FloatArray:

@@ -42,8 +42,12 @@ def _superlu(matrix: csr_array) -> Solve:
 
 def _pardiso(matrix: csr_array) -> Solve:
     from pypardiso import PyPardisoSolver
+    from pypardiso.pardiso_wrapper import PyPardisoError
 
     solver = PyPardisoSolver(mtype=2)
     upper = csr_array(triu(matrix, format="csr"))
-    solver.factorize(upper)
+    try:
+        solver.factorize(upper)
+    except PyPardisoError as error:
+        raise np.linalg.LinAlgError(str(error)) from error
     return lambda b: np.asarray(solver.solve(upper, b))
