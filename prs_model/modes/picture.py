@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import tempfile
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import ceil
 from pathlib import Path
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 
 _FORMATS = (".png", ".svg", ".pdf")
 _AMPLITUDE = 0.06  # largest displacement drawn, as a share of the machine's size
+_GROUNDED_OPACITY = 0.15  # a frame around the machine must not hide it
 
 
 def check_picture_file(path: Path) -> None:
@@ -49,12 +51,7 @@ def draw_modes(modes: Modes, path: Path, title: str = "") -> None:
     figure = plt.Figure(figsize=(3.6 * columns, 4.4 * ceil(count / columns)), layout="constrained")
     for k, character in enumerate(modes.characters()):
         axes = figure.add_subplot(ceil(count / columns), columns, k + 1, projection="3d")
-        largest = max(float(np.linalg.norm(body.displacements[k], axis=1).max()) for body in bodies) or 1.0
-        for body in bodies:
-            moved = body.points + body.displacements[k] * (_AMPLITUDE * float(np.max(high - low)) / largest)
-            colours = plt.colours(np.linalg.norm(body.displacements[k], axis=1)[body.cells].mean(axis=1) / largest)
-            for drawn in (body.at_rest(plt), body.displaced(plt, moved, colours)):
-                axes.add_collection3d(drawn)
+        _draw_mode(plt, axes, bodies, k, _AMPLITUDE * float(np.max(high - low)))
         _frame(axes, low, high)
         axes.set_title(f"mode {k + 1}: {modes.frequencies[k]:.1f} Hz\n{character.group} {character.motion}", fontsize=9)
     bar = figure.colorbar(plt.scale, ax=figure.axes, orientation="horizontal", shrink=0.3, aspect=40, pad=0.01)
@@ -70,18 +67,27 @@ class _BodyPicture:
     points: FloatArray
     cells: IntArray
     displacements: FloatArray
+    opacity: float
 
-    def at_rest(self, plt: SimpleNamespace) -> Any:
-        """The undisplaced body, faint."""
-        if self.cells.shape[1] == 2:
-            return plt.Lines(self.points[self.cells], colors=(0.5, 0.5, 0.5, 0.4), linewidths=0.6)
-        return plt.Faces(self.points[self.cells], facecolors="none", edgecolors=(0.5, 0.5, 0.5, 0.08), linewidths=0.2)
 
-    def displaced(self, plt: SimpleNamespace, moved: FloatArray, colours: FloatArray) -> Any:
-        """The body where the mode takes it."""
-        if self.cells.shape[1] == 2:
-            return plt.Lines(moved[self.cells], colors=colours, linewidths=2.0)
-        return plt.Faces(moved[self.cells], facecolors=colours, edgecolors="none", shade=True)
+def _draw_mode(plt: SimpleNamespace, axes: Any, bodies: Sequence[_BodyPicture], mode: int, amplitude: float) -> None:
+    """All bodies at rest, faint, and where the mode takes them; faces in one collection, so that depth is right."""
+    largest = max(float(np.linalg.norm(body.displacements[mode], axis=1).max()) for body in bodies) or 1.0
+    for corners in (2, 3):
+        drawn = [body for body in bodies if body.cells.shape[1] == corners]
+        if not drawn:
+            continue
+        rest = np.concatenate([body.points[body.cells] for body in drawn])
+        moved = np.concatenate([body.displacements[mode][body.cells] for body in drawn]) / largest
+        colours = plt.colours(np.linalg.norm(moved, axis=2).mean(axis=1))
+        colours[:, 3] = np.concatenate([np.full(len(body.cells), body.opacity) for body in drawn])
+        if corners == 2:
+            axes.add_collection3d(plt.Lines(rest, colors=(0.5, 0.5, 0.5, 0.4), linewidths=0.6))
+            axes.add_collection3d(plt.Lines(rest + amplitude * moved, colors=colours, linewidths=2.0))
+        else:
+            outline = plt.Faces(rest, facecolors=(0.0, 0.0, 0.0, 0.0), edgecolors=(0.5, 0.5, 0.5, 0.1), linewidths=0.2)
+            axes.add_collection3d(outline)
+            axes.add_collection3d(plt.Faces(rest + amplitude * moved, facecolors=colours, linewidths=0.0, shade=True))
 
 
 def _body_picture(modes: Modes, name: str) -> _BodyPicture:
@@ -93,7 +99,8 @@ def _body_picture(modes: Modes, name: str) -> _BodyPicture:
         points, cells, recovery = _star(element.positions, element.motions[:, :3])
     displacements = np.einsum("pin,nk->kpi", recovery, modes.body_shapes(name))
     rotation = placement.rotation
-    return _BodyPicture(points @ rotation.T + placement.translation, cells, displacements @ rotation.T)
+    opacity = _GROUNDED_OPACITY if element.grounded else 1.0
+    return _BodyPicture(points @ rotation.T + placement.translation, cells, displacements @ rotation.T, opacity)
 
 
 def _star(nodes: FloatArray, motions: FloatArray) -> tuple[FloatArray, IntArray, FloatArray]:

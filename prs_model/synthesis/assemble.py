@@ -49,7 +49,8 @@ def assemble(
         constraints[-1][:, rows] = rigid
 
     expansion, kept = independent_coordinates(np.vstack(constraints))
-    mass, stiffness = _project(mass, expansion), _project(stiffness, expansion)
+    if len(kept) < size:
+        mass, stiffness = _project(mass, expansion), _project(stiffness, expansion)
     present = (np.abs(mass).sum(axis=1) > 0) | (np.abs(stiffness).sum(axis=1) > 0)
     if not present.any():
         raise PrsError("every coordinate of the machine is held rigidly; nothing can vibrate")
