@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
@@ -49,6 +49,27 @@ def averaging_matrix(model: FiniteElementModel, tie: Tie) -> csr_array:
     averaging = np.linalg.solve(motions.T @ weighted, weighted.T)
     place = np.tile(rows, 6)
     return csr_array((averaging.ravel(), (np.repeat(np.arange(6), len(rows)), place)), shape=(6, model.size))
+
+
+def rigidified(model: FiniteElementModel, tie: Tie) -> tuple[FiniteElementModel, csr_array]:
+    """The model with a rigid tie's nodes replaced by one of six DOFs, its last rows; and P (n, n'), u = P u'."""
+    rows, block = rigid_rows(model, tie)
+    kept = np.setdiff1d(np.arange(model.size), rows)
+    new = len(kept) + np.arange(6)
+    entries = np.concatenate([np.ones(len(kept)), block.ravel()])
+    into = np.concatenate([kept, np.repeat(rows, 6)])
+    outof = np.concatenate([np.arange(len(kept)), np.tile(new, len(rows))])
+    projection = csr_array((entries, (into, outof)), shape=(model.size, len(kept) + 6))
+    node = np.column_stack([np.full(6, len(model.coordinates)), np.arange(6)])
+    smaller = replace(
+        model,
+        stiffness=csr_array(projection.T @ model.stiffness @ projection),
+        mass=csr_array(projection.T @ model.mass @ projection),
+        coordinates=np.vstack([model.coordinates, tie.position]),
+        node_ids=np.append(model.node_ids, model.node_ids.max() + 1),
+        dofs=np.vstack([model.dofs[kept], node]),
+    )
+    return smaller, projection
 
 
 def check_ties(model: FiniteElementModel, ties: Sequence[Tie]) -> None:

@@ -38,37 +38,85 @@ class Reduction:
     n_modes: int
 
 
+@dataclass(frozen=True, eq=False)
+class HeldPart:
+    """A part with its condensation nodes held, factorized.
+
+    boundary (n, 6 k): T of the k ties, zero for averaged ones, whose D are in constraints (m, n), and in `averaged`
+    the coordinates they belong to. interior: rows that are not rigidly tied. solve: see `constrained_solver`.
+    """
+
+    model: FiniteElementModel
+    boundary: FloatArray
+    constraints: csr_array
+    averaged: IntArray
+    interior: IntArray
+    solve: ConstrainedSolve
+
+
 def craig_bampton(model: FiniteElementModel, ties: Sequence[Tie], n_modes: int) -> Reduction:
     """Reduce a part to its ties and `n_modes` fixed-interface modes.
 
     Raises PartFileError for ties that cannot hold or too many modes, PhysicsError for a part that is not in one piece.
     """
+    part = hold(model, ties)
+    return _reduced(model, static_modes(part), fixed_interface_modes(part, n_modes))
+
+
+def hold(model: FiniteElementModel, ties: Sequence[Tie]) -> HeldPart:
+    """Hold a part at its ties. Raises PartFileError for ties that cannot hold, PhysicsError for a loose piece."""
     check_ties(model, ties)
-    rigid = [tie.coupling == "rigid" for tie in ties]
-    tied, boundary = _rigid_boundary(model, [tie for tie, is_rigid in zip(ties, rigid, strict=True) if is_rigid])
-    averaged = [averaging_matrix(model, tie) for tie, is_rigid in zip(ties, rigid, strict=True) if not is_rigid]
-    constraints = csr_array(vstack(averaged)) if averaged else csr_array((0, model.size))
-    interior = np.setdiff1d(np.arange(model.size), tied)
-    _check_one_piece(model, tied)
-    if n_modes > len(interior) - constraints.shape[0] - 1:
-        raise PartFileError(model.source, f"found {len(interior)} inner DOFs, too few for {n_modes} modes")
-    solve = _solver(model, interior, csr_array(constraints[:, interior]), held=len(tied) > 0)
-    statics = _static_modes(model, boundary, constraints, interior, solve)
-    modes = _fixed_interface_modes(model, interior, solve, constraints.shape[0], n_modes)
-    order = np.argsort(np.repeat(~np.array(rigid), 6), kind="stable")
-    statics = statics[:, np.argsort(order)]
-    return _reduced(model, statics, modes)
-
-
-def _rigid_boundary(model: FiniteElementModel, ties: Sequence[Tie]) -> tuple[IntArray, FloatArray]:
-    """Tied rows, and T of all rigid ties spread over the model's rows: (n, 6 k)."""
     boundary = np.zeros((model.size, 6 * len(ties)))
-    tied = []
+    is_tied = np.zeros(model.size, dtype=bool)
+    averages, averaged = [csr_array((0, model.size))], [np.zeros(0, dtype=np.int64)]
     for j, tie in enumerate(ties):
-        rows, block = rigid_rows(model, tie)
-        boundary[rows, 6 * j : 6 * j + 6] = block
-        tied.append(rows)
-    return np.concatenate(tied) if tied else np.zeros(0, dtype=np.int64), boundary
+        columns = np.arange(6 * j, 6 * j + 6)
+        if tie.coupling == "rigid":
+            rows, block = rigid_rows(model, tie)
+            boundary[np.ix_(rows, columns)] = block
+            is_tied[rows] = True
+        else:
+            averages.append(averaging_matrix(model, tie))
+            averaged.append(columns)
+    _check_one_piece(model, is_tied)
+    constraints, interior = csr_array(vstack(averages)), np.flatnonzero(~is_tied)
+    solve = _solver(model, interior, csr_array(constraints[:, interior]), held=bool(np.any(is_tied)))
+    return HeldPart(model, boundary, constraints, np.concatenate(averaged), interior, solve)
+
+
+def static_modes(part: HeldPart) -> FloatArray:
+    """(n, 6 k): the part's shape for a unit motion of each condensation node, the others held."""
+    wanted = -(part.constraints @ part.boundary)
+    wanted[np.arange(len(part.averaged)), part.averaged] += 1.0
+    shapes = part.boundary.copy()
+    shapes[part.interior] = part.solve(-(part.model.stiffness @ part.boundary)[part.interior], wanted)
+    return shapes
+
+
+def response(part: HeldPart, loads: FloatArray) -> FloatArray:
+    """(n, c): the part's shape under loads (n, c), with its condensation nodes held."""
+    shapes = np.zeros_like(loads)
+    shapes[part.interior] = part.solve(loads[part.interior], np.zeros((part.constraints.shape[0], loads.shape[1])))
+    return shapes
+
+
+def fixed_interface_modes(part: HeldPart, n_modes: int) -> FloatArray:
+    """(n, n_modes): lowest modes with all condensation nodes held, by shift-invert about zero; signs are fixed."""
+    model, n, m = part.model, len(part.interior), part.constraints.shape[0]
+    if n_modes > n - m - 1:
+        raise PartFileError(model.source, f"found {n - m} inner DOFs, too few for {n_modes} modes")
+    shapes = np.zeros((model.size, n_modes))
+    if n_modes == 0:
+        return shapes
+    inner, inner_mass = (csr_array(each[part.interior][:, part.interior]) for each in (model.stiffness, model.mass))
+    held = np.zeros((m, 1))
+    inverse = LinearOperator((n, n), matvec=lambda b: part.solve(b.reshape(-1, 1), held).ravel(), dtype=float)
+    start = np.random.default_rng(0).standard_normal(n)
+    try:
+        shapes[part.interior] = eigsh(inner, n_modes, M=inner_mass, sigma=0.0, OPinv=inverse, v0=start)[1]
+    except ArpackError as error:
+        raise PartFileError(model.source, f"its fixed-interface modes were not found ({error})") from error
+    return _normalised(model, shapes)
 
 
 def _solver(model: FiniteElementModel, interior: IntArray, constraints: csr_array, held: bool) -> ConstrainedSolve:
@@ -81,15 +129,14 @@ def _solver(model: FiniteElementModel, interior: IntArray, constraints: csr_arra
         raise PhysicsError(model.name, "part is held by its interfaces", 0.0, 0.0, cause) from error
 
 
-def _check_one_piece(model: FiniteElementModel, tied: IntArray) -> None:
+def _check_one_piece(model: FiniteElementModel, is_tied: NDArray[np.bool_]) -> None:
     """Raises PhysicsError when a piece of the mesh is joined to nothing: not to the rest, a rigid tie or the ground."""
     pieces, of_row = connected_components(model.stiffness, directed=False)
     if pieces == 1:
         return
     rigid = model.rigid_body_modes(about=model.coordinates.mean(axis=0))
     force = np.linalg.norm(model.stiffness @ rigid, axis=1)
-    held = force > 1e-9 * np.linalg.norm(rigid) * abs(model.stiffness).max()
-    held[tied] = True
+    held = is_tied | (force > 1e-9 * np.linalg.norm(rigid) * abs(model.stiffness).max())
     loose = pieces - len(np.unique(of_row[held]))
     if loose:
         cause = f"of its {pieces} pieces, {loose} are not held; check that the volumes of the mesh share their nodes"
@@ -103,43 +150,6 @@ def _free_motions(model: FiniteElementModel) -> FloatArray:
     energy, combination = eigh(rigid.T @ (model.stiffness @ rigid))
     stiffest = float(model.stiffness.diagonal().max())
     return np.asarray(rigid @ combination[:, energy < 1e-10 * stiffest])
-
-
-def _static_modes(
-    model: FiniteElementModel,
-    boundary: FloatArray,
-    constraints: csr_array,
-    interior: IntArray,
-    solve: ConstrainedSolve,
-) -> FloatArray:
-    """(n, 6 k): the part's shape for a unit motion of each condensation node, the others held; rigid ties first."""
-    m = constraints.shape[0]
-    load = np.hstack([-(model.stiffness @ boundary)[interior], np.zeros((len(interior), m))])
-    wanted = np.hstack([-(constraints @ boundary), np.eye(m)])
-    shapes = np.hstack([boundary, np.zeros((model.size, m))])
-    shapes[interior] = solve(load, wanted)
-    return shapes
-
-
-def _fixed_interface_modes(
-    model: FiniteElementModel, interior: IntArray, solve: ConstrainedSolve, n_constraints: int, n_modes: int
-) -> FloatArray:
-    """(n, n_modes): lowest modes with all condensation nodes held, by shift-invert about zero; signs are fixed."""
-    shapes = np.zeros((model.size, n_modes))
-    if n_modes == 0:
-        return shapes
-    stiffness = csr_array(model.stiffness[interior][:, interior])
-    mass = csr_array(model.mass[interior][:, interior])
-    held = np.zeros((n_constraints, 1))
-    n = len(interior)
-    inverse = LinearOperator((n, n), matvec=lambda b: solve(b.reshape(-1, 1), held).ravel(), dtype=float)
-    start = np.random.default_rng(0).standard_normal(n)
-    try:
-        modes = eigsh(stiffness, n_modes, M=mass, sigma=0.0, OPinv=inverse, v0=start)[1]
-    except ArpackError as error:
-        raise PartFileError(model.source, f"its fixed-interface modes were not found ({error})") from error
-    shapes[interior] = modes
-    return _normalised(model, shapes)
 
 
 def _normalised(model: FiniteElementModel, shapes: FloatArray) -> FloatArray:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from ..description.schema import Interface
 from ..errors import PartFileError
 from ..finite_elements import FiniteElementModel
+from ..finite_elements.rigid_motion import transfer
 from .coupling import Tie
 from .craig_bampton import Reduction, craig_bampton
 from .interfaces import interface_ties
@@ -41,29 +42,25 @@ def to_element(
     reduction: Reduction,
     *,
     grounded: bool,
-    change: FloatArray | None = None,
+    arms: FloatArray | None = None,
+    modes: str = "fixed-interface",
 ) -> SuperElement:
-    """A reduction as a super-element: six coordinates per tie, which are its motion, then the modes.
+    """A reduction as a super-element: six coordinates per tie, then the modes, of the kind `modes`.
 
-    change: C (n, n), where other coordinates v with u = C v are wanted; they keep the labels of u.
+    arms: (k, 3) [m] from the point whose motion the coordinates of a tie are to its node; default zero.
     """
-    n, p = reduction.basis.shape[1], reduction.n_modes
-    change = np.eye(n) if change is None else change
+    n, p, k = reduction.basis.shape[1], reduction.n_modes, len(ties)
+    selectors = np.eye(n)[: 6 * k].reshape(k, 6, n)
     labels = [label for tie in ties for label in node_labels(tie.node)]
     return SuperElement(
-        stiffness=_congruent(reduction.stiffness, change),
-        mass=_congruent(reduction.mass, change),
+        stiffness=reduction.stiffness,
+        mass=reduction.mass,
         nodes=tuple(tie.node for tie in ties),
         positions=np.array([tie.position for tie in ties]),
-        motions=change[: n - p].reshape(len(ties), 6, n),
+        motions=selectors if arms is None else transfer(arms) @ selectors,
         n_modes=p,
         grounded=grounded,
-        surface=decimate(model, reduction.basis @ change),
+        surface=decimate(model, reduction.basis),
         labels=(*labels, *(f"mode {i + 1}" for i in range(p))),
-        provenance={**model.provenance, "modes": "fixed-interface", "full_dofs": str(model.size)},
+        provenance={**model.provenance, "modes": modes, "full_dofs": str(model.size)},
     )
-
-
-def _congruent(matrix: FloatArray, change: FloatArray) -> FloatArray:
-    product = change.T @ matrix @ change
-    return np.asarray((product + product.T) / 2.0)

@@ -11,7 +11,7 @@ from typing import Any
 
 from ..description.schema import Body, Coupling, Interface, ReductionDefaults, Section, Tie
 
-VERSION = 1  # raised when the reduction itself changes its results
+VERSION = 2  # raised when the reduction itself changes its results
 
 
 @dataclass(frozen=True)

@@ -1,8 +1,7 @@
-"""Parts whose contact travels: one reduction per station of the joint, in coordinates that mean the same at each."""
+"""Parts whose contact travels: which finite-element nodes it takes hold of at each station of the joint."""
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Mapping
 from dataclasses import replace
 
@@ -12,9 +11,9 @@ from numpy.typing import NDArray
 from ..description.schema import Interface, Travel
 from ..errors import PartFileError
 from ..finite_elements import FiniteElementModel
-from ..finite_elements.rigid_motion import transfer
+from .contact import reduction_per_station
 from .coupling import Tie
-from .craig_bampton import Reduction, craig_bampton
+from .craig_bampton import craig_bampton
 from .from_model import to_element
 from .interfaces import interface_ties
 from .recipe import Settings
@@ -22,8 +21,6 @@ from .super_element import SuperElement
 from .travelling import TravellingElement
 
 FloatArray = NDArray[np.float64]
-
-logger = logging.getLogger("prs_model")
 
 
 def travelling_interface(interfaces: Mapping[str, Interface], source: str) -> tuple[str, Travel] | None:
@@ -51,10 +48,16 @@ def reduce_travelling(
         raise PartFileError(model.source, f"interfaces.{name}.travel.along: found (0, 0, 0), expected a direction")
     stations = np.array(travel.stations, dtype=float)
     shifts = np.outer(stations, direction / np.linalg.norm(direction))
-    fixed, moving = _ties_by_station(model, interfaces, settings, name, shifts)
-    build = _one_reduction_per_station if travel.method == "reduced" else _one_node_per_station
-    elements = build(model, fixed, moving, settings.modes, grounded)
-    return TravellingElement(travel.joint, stations, elements)
+    ties, moving = _ties_by_station(model, interfaces, settings, name, shifts)
+    if travel.method == "stations":
+        nodes = node_per_station(model, ties, moving, settings.modes, grounded)
+        return TravellingElement(travel.joint, stations, nodes)
+    if all(moving) and not grounded:
+        raise PartFileError(
+            model.source, f"interfaces.{name}: the part has no other interface and no ground to be held by; add one"
+        )
+    elements, products = reduction_per_station(model, ties, np.array(moving), settings.modes, grounded)
+    return TravellingElement(travel.joint, stations, elements, products)
 
 
 def _ties_by_station(
@@ -63,84 +66,38 @@ def _ties_by_station(
     settings: Settings,
     travelling: str,
     shifts: FloatArray,
-) -> tuple[list[Tie], list[list[Tie]]]:
-    """Ties that stay, and the travelling interface's ties at every station, their nodes on straight lines."""
-    others = {name: each for name, each in interfaces.items() if name != travelling}
-    moving = [interface_ties(model, {travelling: interfaces[travelling]}, settings, shift=shift) for shift in shifts]
-    origins = np.mean(
-        [[tie.position - shift for tie in ties] for ties, shift in zip(moving, shifts, strict=True)], axis=0
-    )
-    straight = [
-        [replace(tie, position=origin + shift) for tie, origin in zip(ties, origins, strict=True)]
-        for ties, shift in zip(moving, shifts, strict=True)
-    ]
-    return interface_ties(model, others, settings), straight
+) -> tuple[list[list[Tie]], list[bool]]:
+    """All ties at every station, and which of them travel; the nodes of those that do are put on straight lines."""
+    ties = [interface_ties(model, interfaces, settings, shift=shift) for shift in shifts]
+    one = interface_ties(model, {travelling: interfaces[travelling]}, settings, shift=shifts[0])
+    names = {tie.node for tie in one}
+    moving = [tie.node in names for tie in ties[0]]
+    positions = np.array([[tie.position for tie in station] for station in ties])
+    starts = np.mean(positions - shifts[:, None, :], axis=0)
+    for station, shift in zip(ties, shifts, strict=True):
+        for j in np.flatnonzero(moving):
+            station[j] = replace(station[j], position=starts[j] + shift)
+    return ties, moving
 
 
-def _one_reduction_per_station(
-    model: FiniteElementModel, fixed: list[Tie], moving: list[list[Tie]], n_modes: int, grounded: bool
-) -> tuple[SuperElement, ...]:
-    """Method ``reduced``: travelling coordinates refer to one point r_0 of the body, modes follow the last station's.
-
-    Motion of the node at station k: X(r_k - r_0) U, so a rigid motion has the same coordinates at every station.
-    """
-    references = np.mean([[tie.position for tie in ties] for ties in moving], axis=0)
-    elements: list[SuperElement] = []
-    previous: FloatArray | None = None
-    for index, ties in enumerate(moving):
-        logger.info("%s: station %d of %d", model.name, index + 1, len(moving))
-        reduction = craig_bampton(model, [*fixed, *ties], n_modes)
-        arms = np.array([tie.position for tie in ties]) - references
-        change = _change(reduction, len(fixed), arms, _aligned(model, reduction, previous))
-        elements.append(to_element(model, [*fixed, *ties], reduction, grounded=grounded, change=change))
-        previous = (reduction.basis @ change)[:, reduction.basis.shape[1] - n_modes :]
-    return tuple(elements)
-
-
-def _change(reduction: Reduction, n_fixed: int, arms: FloatArray, rotation: FloatArray) -> FloatArray:
-    """C = diag(1, X(arm) .., Q): from coordinates that mean the same at every station to the reduction's own."""
-    n = reduction.basis.shape[1]
-    change = np.eye(n)
-    for j, block in enumerate(transfer(arms), start=n_fixed):
-        change[6 * j : 6 * j + 6, 6 * j : 6 * j + 6] = block
-    change[n - reduction.n_modes :, n - reduction.n_modes :] = rotation
-    return change
-
-
-def _aligned(model: FiniteElementModel, reduction: Reduction, previous: FloatArray | None) -> FloatArray:
-    """Q (p, p), orthogonal: min |Phi Q - Phi_previous| in the mass inner product (Procrustes)."""
-    p = reduction.n_modes
-    if previous is None or p == 0:
-        return np.eye(p)
-    modes = reduction.basis[:, reduction.basis.shape[1] - p :]
-    left, likeness, right = np.linalg.svd(modes.T @ (model.mass @ previous))
-    if likeness[-1] < 0.5:
-        logger.warning(
-            "%s: its fixed-interface modes change between two stations (likeness %.2f of 1); "
-            "use closer stations or another number of modes",
-            model.name,
-            likeness[-1],
-        )
-    return np.asarray(left @ right)
-
-
-def _one_node_per_station(
-    model: FiniteElementModel, fixed: list[Tie], moving: list[list[Tie]], n_modes: int, grounded: bool
+def node_per_station(
+    model: FiniteElementModel, ties: list[list[Tie]], moving: list[bool], n_modes: int, grounded: bool
 ) -> tuple[SuperElement, ...]:
     """Method ``stations``: one reduction with nodes ``<node>@<k>``; the travelling node is station k's there."""
-    named = [[replace(tie, node=f"{tie.node}@{k}") for tie in ties] for k, ties in enumerate(moving, start=1)]
-    ties = [*fixed, *(tie for station in named for tie in station)]
-    whole = to_element(model, ties, craig_bampton(model, ties, n_modes), grounded=grounded)
-    nodes = tuple(tie.node for tie in moving[0])
+    fixed = [tie for tie, moves in zip(ties[0], moving, strict=True) if not moves]
+    held = [
+        replace(tie, node=f"{tie.node}@{k}")
+        for k, station in enumerate(ties, start=1)
+        for tie, moves in zip(station, moving, strict=True)
+        if moves
+    ]
+    whole = to_element(model, [*fixed, *held], craig_bampton(model, [*fixed, *held], n_modes), grounded=grounded)
+    names, kept = tuple(tie.node for tie in ties[0]), tuple(tie.node for tie in held)
     elements = []
-    for station in named:
-        here = [whole.node(tie.node) for tie in station]
+    for k in range(1, len(ties) + 1):
+        here = [f"{name}@{k}" if moves else name for name, moves in zip(names, moving, strict=True)]
+        source = [whole.node(name) for name in (*here, *kept)]
         elements.append(
-            replace(
-                whole,
-                nodes=(*whole.nodes[: len(fixed)], *nodes, *whole.nodes[len(fixed) :]),
-                positions=np.insert(whole.positions, len(fixed), whole.positions[here], axis=0),
-                motions=np.insert(whole.motions, len(fixed), whole.motions[here], axis=0),
-            )
+            replace(whole, nodes=(*names, *kept), positions=whole.positions[source], motions=whole.motions[source])
         )
     return tuple(elements)

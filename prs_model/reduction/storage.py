@@ -31,7 +31,9 @@ def save(element: SuperElement | TravellingElement, path: str | Path) -> None:
     arrays = _arrays(stations)
     if isinstance(element, TravellingElement):
         header["joint"] = element.joint
-        arrays["stations"] = np.asarray(element.stations)
+        arrays["stations"] = element.stations
+        if element.products is not None:
+            arrays["products"] = element.products
     draft = path.with_name(f".{path.name}.{os.getpid()}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -111,7 +113,9 @@ def _element(header: dict[str, Any], arrays: Arrays, path: Path) -> SuperElement
         raise PartFileError(path, "damaged: it holds values that are not finite numbers; make it again from its source")
     stations = arrays.get("stations")
     elements = tuple(_station(header, arrays, i) for i in range(1 if stations is None else len(stations)))
-    return elements[0] if stations is None else TravellingElement(header["joint"], stations, elements)
+    if stations is None:
+        return elements[0]
+    return TravellingElement(header["joint"], stations, elements, arrays.get("products"))
 
 
 def _station(header: dict[str, Any], arrays: Arrays, index: int) -> SuperElement:

@@ -46,7 +46,7 @@ class SuperElement:
 
     def __post_init__(self) -> None:
         for name in ("stiffness", "mass", "positions", "motions"):
-            object.__setattr__(self, name, _read_only(getattr(self, name)))
+            object.__setattr__(self, name, read_only(getattr(self, name)))
         n, k = len(self.stiffness), len(self.nodes)
         shapes = {"stiffness": (n, n), "mass": (n, n), "positions": (k, 3), "motions": (k, 6, n)}
         for name, shape in shapes.items():
@@ -79,7 +79,7 @@ class SuperElement:
 
     @cached_property
     def _rigid_body_modes(self) -> FloatArray:
-        return _read_only(rigid_body_modes(self.motions, self.positions))
+        return read_only(rigid_body_modes(self.motions, self.positions))
 
     def rigid_body_modes(self) -> FloatArray:
         """(n, 6): the coordinates when the part moves rigidly by unit translations and rotations of its origin.
@@ -127,7 +127,8 @@ def node_labels(node: str) -> tuple[str, ...]:
     return tuple(f"{node}.{axis}" for axis in AXES)
 
 
-def _read_only(array: FloatArray) -> FloatArray:
+def read_only(array: FloatArray) -> FloatArray:
+    """A copy that cannot be written to."""
     array = np.array(array, dtype=float)
     array.setflags(write=False)
     return array

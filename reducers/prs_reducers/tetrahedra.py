@@ -61,7 +61,7 @@ def element_stiffness(corners: FloatArray, material: Material) -> FloatArray:
     stiffness = lam * products + mu * products.transpose(0, 1, 4, 3, 2)
     for axis in range(3):
         stiffness[:, :, axis, :, axis] += mu * shear
-    return stiffness.reshape(e, 3 * m, 3 * m)
+    return np.asarray(stiffness.reshape(e, 3 * m, 3 * m))
 
 
 def element_mass(corners: FloatArray, material: Material, order: int = 6) -> FloatArray:
@@ -87,7 +87,8 @@ def face_areas(points: FloatArray, faces: IntArray) -> FloatArray:
     corners = points[faces[:, :3]]
     areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2.0
     bearing = faces[:, -3:]
-    return np.bincount(bearing.ravel(), weights=np.repeat(areas / 3.0, 3), minlength=len(points))
+    shares = np.bincount(bearing.ravel(), weights=np.repeat(areas / 3.0, 3), minlength=len(points))
+    return np.asarray(shares, dtype=float)
 
 
 def _shape(corners: FloatArray, order: int) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -1,0 +1,157 @@
+"""A contact that travels along a part: exact rigid motion at every value, smooth and accurate in between."""
+
+import itertools
+
+import numpy as np
+import pytest
+from scipy.linalg import eigh
+
+import prs_model as prs
+from prs_model.description.schema import Interface
+from prs_model.finite_elements import FiniteElementModel
+from prs_model.finite_elements.rigid_motion import transfer
+from prs_model.reduction import SuperElement, TravellingElement
+from prs_model.reduction.from_model import reduce_model
+from prs_model.reduction.recipe import Settings
+from prs_model.reduction.stations import reduce_travelling
+from tests.meshes import box, steel
+
+STATIONS = (0.1, 0.2, 0.3, 0.4, 0.5)
+
+
+@pytest.fixture(scope="module")
+def rail() -> FiniteElementModel:
+    return steel(box((0.6, 0.08, 0.06), (24, 2, 1)))
+
+
+def interfaces(method: str, coupling: str, **travel: object) -> dict[str, Interface]:
+    contact = {
+        "set": "z1",
+        "box": {"x": (-0.05, 0.05)},
+        "coupling": coupling,
+        "travel": {"joint": "slide", "along": (2.0, 0.0, 0.0), "stations": STATIONS, "method": method} | travel,
+    }
+    return {
+        "left": Interface(set="x0"),
+        "contact": Interface.model_validate(contact),
+        "right": Interface(set="x1"),
+    }
+
+
+@pytest.fixture(scope="module", params=[("reduced", "rigid"), ("reduced", "averaged"), ("stations", "averaged")])
+def element(request: pytest.FixtureRequest, rail: FiniteElementModel) -> TravellingElement:
+    return reduce_travelling(rail, interfaces(*request.param), Settings("rigid", "joint", 2))
+
+
+def loaded_frequencies(element: SuperElement) -> np.ndarray:
+    """Lowest frequencies [Hz] of the rail held at its left end, with 5 kg riding on the contact."""
+    contact = element.motions[element.node("contact")][:3]
+    free = np.setdiff1d(np.arange(element.size), np.flatnonzero(element.motions[element.node("left")].any(axis=0)))
+    mass = element.mass + 5.0 * contact.T @ contact
+    values = eigh(element.stiffness[np.ix_(free, free)], mass[np.ix_(free, free)], eigvals_only=True)
+    return np.sqrt(values[:4]) / (2.0 * np.pi)
+
+
+@pytest.mark.parametrize("value", [0.1, 0.137, 0.25, 0.5])
+def test_rigid_motions_are_exact_everywhere(element, rail, value):
+    here = element.at(value)
+    here.check()
+    phi = element.elements[0].rigid_body_modes()
+    assert here.rigid_body_modes() == pytest.approx(phi, abs=1e-11)
+    assert np.linalg.norm(here.stiffness @ phi) < 1e-11 * np.linalg.norm(here.stiffness) * np.linalg.norm(phi)
+    assert here.positions[here.node("contact")] == pytest.approx([value, 0.04, 0.06], abs=1e-9)
+    assert here.motions @ phi == pytest.approx(transfer(here.positions), abs=1e-10)
+    assert here.mass_properties().mass == pytest.approx(rail.mass_properties().mass, rel=1e-9)
+
+
+def test_stations_are_met_exactly(element):
+    for value, there in zip(element.stations, element.elements, strict=True):
+        here = element.at(value)
+        assert here.stiffness == pytest.approx(there.stiffness, rel=1e-9, abs=1e-9 * np.abs(there.stiffness).max())
+        assert here.motions == pytest.approx(there.motions, abs=1e-12)
+        assert here.surface.recovery == pytest.approx(there.surface.recovery, abs=1e-6)
+
+
+def test_frequencies_follow_the_stroke_without_jumps(element):
+    """Second differences over 2.5 mm steps stay small: facets that come and go would show as jumps of 1 %."""
+    path = np.array([loaded_frequencies(element.at(value, surface=False)) for value in np.arange(0.2, 0.4, 0.0025)])
+    second = np.abs(np.diff(path, n=2, axis=0)) / path[1:-1]
+    assert second.max() < 2e-3
+    assert np.abs(np.diff(path, axis=0)).max() > 0.0
+
+
+def test_midway_it_is_the_part_reduced_there(rail):
+    spline = reduce_travelling(rail, interfaces("reduced", "averaged"), Settings("rigid", "joint", 4)).at(0.25)
+    there = interfaces("reduced", "averaged")
+    there["contact"] = Interface.model_validate({"set": "z1", "box": {"x": (0.2, 0.3)}, "coupling": "averaged"})
+    exact = reduce_model(rail, there, Settings("rigid", "joint", 4))
+    assert loaded_frequencies(spline) == pytest.approx(loaded_frequencies(exact), rel=5e-3)
+
+
+def test_both_methods_agree(rail):
+    ways = [
+        reduce_travelling(rail, interfaces(method, "averaged"), Settings("rigid", "joint", 8)).at(0.3)
+        for method in ("reduced", "stations")
+    ]
+    one, other = (loaded_frequencies(way) for way in ways)
+    assert one[:3] == pytest.approx(other[:3], rel=5e-3)
+
+
+def test_modes_keep_their_order_and_sign_from_station_to_station(rail):
+    element = reduce_travelling(rail, interfaces("reduced", "averaged"), Settings("rigid", "joint", 4))
+    assert element.nodes == ("left", "contact", "right")
+    assert element.labels[5:7] == ("left.rz", "contact.ux")
+    assert element.labels[-1] == "mode 4"
+    recoveries = [each.surface.recovery[:, :, -4:] for each in element.elements]
+    for one, other in itertools.pairwise(recoveries):
+        likeness = np.einsum("pim,pim->m", one, other)
+        assert np.all(likeness > 0.0)
+
+
+def test_members_travel_together(rail):
+    two = {
+        "tie": "interface",
+        "coupling": "averaged",
+        "members": tuple(
+            {"name": f"c{i}", "set": "z1", "box": {"x": (x, x + 0.04)}, "at": (x + 0.02, 0.04, 0.06)}
+            for i, x in ((1, -0.05), (2, 0.01))
+        ),
+        "travel": {"joint": "slide", "along": (1.0, 0.0, 0.0), "stations": STATIONS},
+    }
+    ends = {"left": Interface(set="x0"), "contact": Interface.model_validate(two)}
+    here = reduce_travelling(rail, ends, Settings("rigid", "joint", 2)).at(0.33)
+    assert here.nodes == ("left", "contact.c1", "contact.c2")
+    assert here.positions[1:] == pytest.approx(np.array([[0.30, 0.04, 0.06], [0.36, 0.04, 0.06]]))
+    here.check()
+
+
+def test_far_apart_stations_lose_accuracy_but_never_sense():
+    """A slender cantilevered rail under a rigid contact, stations as long as the contact: nothing becomes negative."""
+    slender = steel(box((0.6, 0.06, 0.04), (24, 2, 1)))
+    ends = interfaces("reduced", "rigid", stations=(0.1, 0.25, 0.4, 0.5))
+    del ends["right"]
+    element = reduce_travelling(slender, ends, Settings("rigid", "joint", 6))
+    for value in np.linspace(0.1, 0.5, 33):
+        element.at(value, surface=False).check()
+
+
+def test_a_single_free_contact_needs_something_to_hold_the_part(rail):
+    alone = {"contact": interfaces("reduced", "averaged")["contact"]}
+    with pytest.raises(prs.PartFileError, match="no other interface and no ground"):
+        reduce_travelling(rail, alone, Settings("rigid", "joint", 2))
+    clamped = reduce_travelling(rail.clamp(["z0"]), alone, Settings("rigid", "joint", 2), grounded=True)
+    clamped.check()
+
+
+def test_what_cannot_travel_is_explained(rail):
+    element = reduce_travelling(rail, interfaces("reduced", "averaged"), Settings("rigid", "joint", 0))
+    with pytest.raises(prs.PrsError, match=r"travels with joint slide from 0.1 to 0.5, asked for 0.6"):
+        element.at(0.6)
+    cases = (
+        (interfaces("reduced", "rigid", along=(0.0, 0.0, 0.0)), "found \\(0, 0, 0\\), expected a direction"),
+        (interfaces("reduced", "rigid", stations=(0.1, 0.2, 0.3, 0.9)), "interfaces.contact: no node is in all of"),
+        (interfaces("stations", "rigid", stations=(0.1, 0.15, 0.2, 0.3)), "contact@1 and contact@2 share the nodes"),
+    )
+    for wrong, words in cases:
+        with pytest.raises(prs.PartFileError, match=words):
+            reduce_travelling(rail, wrong, Settings("rigid", "joint", 0))
