@@ -1,4 +1,4 @@
-"""The eigenproblem on pencils with known answers: singular mass, rigid-body modes, repeated roots, and nothing to hold."""
+"""The eigenproblem on pencils with known answers: singular mass, rigid-body modes, repeated roots, nothing held."""
 
 import numpy as np
 import pytest

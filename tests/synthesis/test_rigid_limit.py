@@ -1,7 +1,7 @@
 """Rigid bodies and rigid joints on elastic drives: the engine must equal Pinocchio's own rigid-body dynamics.
 
-The twin takes the joint-space inertia matrix (CRBA) of the open tree, restricts it to the null space of the closures and
-puts the drives' stiffness on the actuated joints.
+The twin takes the joint-space inertia matrix (CRBA) of the open tree, restricts it to the null space of the closures
+and puts the drives' stiffness on the actuated joints.
 """
 
 import numpy as np
