@@ -6,6 +6,7 @@ import json
 import os
 import zipfile
 import zlib
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -43,14 +44,15 @@ def save(element: SuperElement | TravellingElement, path: str | Path) -> None:
     except OSError as error:
         raise PartFileError(path, f"cannot be written: {error.strerror or error}") from error
     finally:
-        draft.unlink(missing_ok=True)
+        with suppress(OSError):
+            draft.unlink(missing_ok=True)
 
 
 def load(path: str | Path) -> SuperElement | TravellingElement:
     """Read what `save` wrote. Raises PartFileError when the file is missing, damaged or something else."""
     path = Path(path)
     try:
-        with np.load(path, allow_pickle=False) as file:
+        with path.open("rb") as opened, np.load(opened, allow_pickle=False) as file:
             arrays = {name: file[name] for name in file.files}
         header = json.loads(str(arrays.pop("header")))
         return _element(header, arrays, path)

@@ -1,0 +1,134 @@
+"""Building parts: the store, its recipes, identical limbs, and parts that come already reduced."""
+
+import shutil
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import prs_model as prs
+from prs_model.description.schema import Body, ReductionDefaults
+from prs_model.reduction import build_part
+from tests.meshes import STEEL, box, write
+
+STEEL_MM = {"units": "mm-N-tonne-s", "material": STEEL}
+DEFAULTS = ReductionDefaults(store="reduced", modes=2)
+
+
+def body(**changes: object) -> Body:
+    entries = {
+        "frame": "rod_1",
+        "reducer": "solid",
+        "source": "rod.msh",
+        "units": "mm-N-tonne-s",
+        "options": {"material": STEEL},
+        "interfaces": {"hinge": {"set": "x0"}, "tip": {"set": "x1"}},
+    }
+    return Body.model_validate(entries | changes)
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    write(box((0.35, 0.05, 0.05), (5, 1, 1)), tmp_path / "rod.msh", scale=1000.0)
+    return tmp_path
+
+
+def stored(folder: Path) -> list[str]:
+    return sorted(path.name for path in (folder / "reduced").glob("*"))
+
+
+def test_a_part_is_reduced_once_and_then_found(folder):
+    first = build_part("rod_1", body(), DEFAULTS, folder, stem="rod")
+    assert first.nodes == ("hinge", "tip")
+    assert first.positions == pytest.approx(np.array([[0.0, 0.025, 0.025], [0.35, 0.025, 0.025]]))
+    (name,) = stored(folder)
+    assert name.startswith("rod-")
+    (folder / "rod.msh").unlink()
+    again = build_part("rod_1", body(), DEFAULTS, folder, stem="rod")
+    assert np.array_equal(first.stiffness, again.stiffness)
+    assert again.provenance["source"] == "rod.msh"
+
+
+def test_identical_limbs_share_one_element(folder):
+    one = build_part("rod_1", body(), DEFAULTS, folder, stem="rod")
+    other = build_part("rod_2", body(frame="rod_2"), DEFAULTS, folder, stem="rod")
+    assert one is other
+    assert len(stored(folder)) == 1
+
+
+def test_limbs_travel_with_their_own_joint(folder):
+    def board(limb: int) -> Body:
+        travel = {"joint": f"slide_{limb}", "along": (1.0, 0.0, 0.0), "stations": (0.1, 0.15, 0.2, 0.25)}
+        rail = {"set": "z1", "box": {"x": (-0.05, 0.05)}, "travel": travel, "coupling": "averaged"}
+        return body(frame=f"board_{limb}", interfaces={"seat": {"set": "x0"}, "rail": rail})
+
+    one, other = (build_part(f"board_{limb}", board(limb), DEFAULTS, folder, stem="board") for limb in (1, 2))
+    assert isinstance(one, prs.TravellingElement)
+    assert (one.joint, other.joint) == ("slide_1", "slide_2")
+    assert one.elements is other.elements
+    assert len(stored(folder)) == 1
+
+
+def test_a_changed_part_file_is_reduced_again(folder):
+    first = build_part("rod", body(), DEFAULTS, folder)
+    write(box((0.35, 0.06, 0.05), (5, 1, 1)), folder / "rod.msh", scale=1000.0)
+    second = build_part("rod", body(), DEFAULTS, folder)
+    assert second.mass_properties().mass == pytest.approx(1.2 * first.mass_properties().mass)
+    assert len(stored(folder)) == 1
+
+
+def test_settings_decide_which_stored_element_is_used(folder):
+    """Each change of the result has its own file; what does not matter has not."""
+    build_part("rod", body(), DEFAULTS, folder)
+    same = (body(frame="elsewhere"), body(modes=2), body(coupling="rigid", tie="joint"))
+    for each in same:
+        build_part("rod", each, DEFAULTS, folder)
+    assert len(stored(folder)) == 1
+    lighter = {"material": STEEL | {"density": {"value": 2700.0, "source": "assumed"}}}
+    different = (body(modes=4), body(coupling="averaged"), body(options=lighter), body(units="m-N-kg-s"))
+    for count, each in enumerate(different, start=2):
+        build_part("rod", each, DEFAULTS, folder)
+        assert len(stored(folder)) == count
+
+
+def test_what_is_missing_is_explained(folder):
+    with pytest.raises(prs.PartFileError, match=r"no\.msh: there is no such file; correct bodies.rod.source"):
+        build_part("rod", body(source="no.msh"), ReductionDefaults(), folder)
+    build_part("rod", body(), DEFAULTS, folder)
+    (folder / "rod.msh").unlink()
+    with pytest.raises(prs.PartFileError, match=r"differs in modes: 5, stored 2; put the part file there"):
+        build_part("rod", body(modes=5), DEFAULTS, folder)
+    (folder / "rebuild.py").touch()
+    with pytest.raises(prs.PartFileError, match=r"make it with: python .*rebuild\.py"):
+        build_part("rod", body(modes=5), DEFAULTS, folder)
+    package = folder / "machines" / "head"
+    shutil.copytree(folder / "reduced", package / "reduced")
+    for file in (package / "__init__.py", package.parent / "__init__.py", package / "rebuild.py"):
+        file.touch()
+    with pytest.raises(prs.PartFileError, match=r"python -m machines.head.rebuild"):
+        build_part("rod", body(modes=5), DEFAULTS, package)
+
+
+def test_a_damaged_or_tampered_store_is_noticed(folder):
+    element = build_part("rod", body(), DEFAULTS, folder)
+    path = folder / "reduced" / stored(folder)[0]
+    heavier = element.mass.copy()
+    heavier[0, 0] *= 2.0
+    replace(element, mass=heavier).save(path)
+    with pytest.raises(prs.PhysicsError, match="rod: three equal translational masses"):
+        build_part("rod", body(), DEFAULTS, folder)
+    path.write_bytes(b"nothing")
+    with pytest.raises(prs.PartFileError, match="make it again from its source"):
+        build_part("rod", body(), DEFAULTS, folder)
+
+
+def test_reduced_parts_take_the_names_of_interfaces(folder):
+    held = {"clamped": ["y0"], "grounded": True, "modes": 0}
+    element = prs.reduce("solid", folder / "rod.msh", interfaces=interfaces, **held, **STEEL_MM)
+    assert element.positions[0] == pytest.approx(np.zeros(3))
+    assert element.size == 12
+    with pytest.raises(prs.DescriptionError, match=r"interfaces.hinge.st: found an unknown key.*did you mean 'set'"):
+        prs.reduce("solid", folder / "rod.msh", interfaces={"hinge": {"st": "x0"}}, material=STEEL)
+    with pytest.raises(prs.UnknownNameError, match="Did you mean 'solid'"):
+        prs.reduce("sold", folder / "rod.msh")
