@@ -124,6 +124,28 @@ def test_a_damaged_or_tampered_store_is_noticed(folder):
 
 
 def test_reduced_parts_take_the_names_of_interfaces(folder):
+    element = prs.reduce("solid", folder / "rod.msh", interfaces=body().interfaces, **STEEL_MM)
+    element.save(folder / "rod.npz")
+    entries = {"reducer": "npz", "source": "rod.npz", "units": None, "options": {}}
+    named = {"lower": {"node": "hinge"}, "tip": {}}
+    renamed = build_part("rod", body(**entries, interfaces=named), ReductionDefaults(), folder)
+    assert renamed.nodes == ("lower", "tip")
+    assert renamed.labels[0] == "lower.ux"
+    cases = (
+        ({"lower": {"node": "hing"}}, "interfaces.lower.node: found 'hing', .*did you mean 'hinge'"),
+        ({"a": {"node": "tip"}, "b": {"node": "tip"}}, "node 'tip' is interface 'a' already"),
+        ({"tip": {"node": "hinge"}}, "has the name of another retained node"),
+        ({"tip": {"set": "x1"}}, "already reduced: name one of its nodes"),
+    )
+    for interfaces, words in cases:
+        with pytest.raises(prs.PartFileError, match=words):
+            build_part("rod", body(**entries, interfaces=interfaces), ReductionDefaults(), folder)
+    with pytest.raises(prs.PartFileError, match="leave 'units' out"):
+        build_part("rod", body(**entries | {"units": "m-N-kg-s"}), ReductionDefaults(), folder)
+
+
+def test_reduce_takes_plain_lists_and_arrays(folder):
+    interfaces = {"hinge": {"set": "x0", "at": np.array([0.0, 0.0, 0.0])}, "tip": {"box": {"x": [0.3, 0.4]}}}
     held = {"clamped": ["y0"], "grounded": True, "modes": 0}
     element = prs.reduce("solid", folder / "rod.msh", interfaces=interfaces, **held, **STEEL_MM)
     assert element.positions[0] == pytest.approx(np.zeros(3))
