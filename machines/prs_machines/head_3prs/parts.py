@@ -174,13 +174,14 @@ def rod(size: float = 1.0) -> SolidMesh:
     Steel. Frame `rod_i`. Surfaces: `b1` (y < 0), `b2` and `tip`.
     """
     with model("rod", 14 * size) as gmsh:
-        bar = _tapered_bar(gmsh, (0, 338), ((14.5, 55), (13, 22)))
+        bar = _tapered_bar(gmsh, (44, 338), ((13.5, 54), (12, 24)))
+        neck = box(gmsh, (-20, 20), (-43, 43), (0, 60))  # passes between the slider's lugs
         hub = [
             cylinder(gmsh, "y", 34, (-43, 43)),
             cylinder(gmsh, "y", BEARING_RADIUS, (-BEARING_SPAN[1], BEARING_SPAN[1])),
         ]
         ball = (3, gmsh.model.occ.addSphere(0, 0, ROD_LENGTH, BALL_RADIUS))
-        whole = cut(gmsh, [join(gmsh, [*hub, bar, ball])], [cylinder(gmsh, "y", 12, (-200, 200))])
+        whole = cut(gmsh, [join(gmsh, [*hub, neck, bar, ball])], [cylinder(gmsh, "y", 12, (-200, 200))])
         keep_half(gmsh, whole)
         half = mesh(gmsh)
     return _both_halves(half).named({"b1": _bore(-1), "b2": _bore(1), "tip": _ball((0, 0, ROD_LENGTH))})
