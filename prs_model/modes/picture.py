@@ -117,7 +117,7 @@ def _frame(axes: Any, low: FloatArray, high: FloatArray) -> None:
         getattr(axes, f"set_{axis}lim")(a, b)
         getattr(axes, f"set_{axis}label")(f"{axis} / m", fontsize=7)
     axes.tick_params(labelsize=6)
-    axes.set_box_aspect(high - low + 2 * margin)
+    axes.set_box_aspect(high - low + 2 * margin, zoom=0.88)
     axes.view_init(elev=18, azim=-60)
 
 

@@ -50,7 +50,8 @@ def rigid_twin(part: SuperElement | TravellingElement, value: float) -> SuperEle
         motion[:] = [pin.SE3(np.eye(3), -r).toActionMatrix() for r in element.positions]
     phi = element.rigid_body_modes()[:, : motion.shape[2]]
     mass = phi.T @ element.mass @ phi
-    return SuperElement(np.zeros_like(mass), 0.5 * (mass + mass.T), element.nodes, element.positions, motion)
+    mass = 0.5 * (mass + mass.T)
+    return SuperElement(np.zeros_like(mass), mass, element.nodes, element.positions, motion, grounded=element.grounded)
 
 
 def pinocchio_frequencies(machine: prs.Machine, configuration, elements) -> np.ndarray:
