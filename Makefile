@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
 
-.PHONY: demo test check parts clean
+.PHONY: demo test check parts pictures clean
 
 demo: $(VENV)/.test
 	@mkdir -p out
@@ -21,6 +21,10 @@ check: $(VENV)/.dev
 # Rebuilds the meshes and super-elements of head_3prs from its part script (needs Debian's libglu1-mesa and X libraries).
 parts: $(VENV)/.mesh
 	$(BIN)/python -m prs_machines.head_3prs.rebuild
+
+# Redraws the pictures of the documentation.
+pictures: $(VENV)/.test
+	$(BIN)/prs-model modes head_3prs -n 8 --picture docs/pictures/head_3prs_modes.png
 
 $(VENV)/.pip:
 	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "prs-model needs Python 3.11 or later: make PYTHON=python3.11 ...")'
