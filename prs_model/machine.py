@@ -13,6 +13,7 @@ from .description import MachineDescription, load_description, replaced
 from .errors import PrsError
 
 if TYPE_CHECKING:
+    from .joints import ElasticJoint
     from .kinematics import Configuration, Kinematics
     from .modes import Modes
     from .reduction import SuperElement, TravellingElement
@@ -57,6 +58,13 @@ class Machine:
             for name, body in self.description.bodies.items()
         }
 
+    @cached_property
+    def joints(self) -> tuple[ElasticJoint, ...]:
+        """The elastic joints, with everything that does not depend on the pose worked out."""
+        from .joints import elastic_joints
+
+        return elastic_joints(self.description)
+
     def configuration(self, **pose: float) -> Configuration:
         """The configuration at a pose [m, rad]; coordinates left out take their reference values.
 
@@ -71,7 +79,7 @@ class Machine:
         """The synthesised system in a configuration (default: the reference)."""
         from .synthesis import assemble
 
-        return assemble(self.description, self.parts, configuration or self.configuration())
+        return assemble(self.description, self.parts, self.joints, configuration or self.configuration())
 
     def modes(self, count: int = 8, **pose: float) -> Modes:
         """The lowest natural modes at a pose."""

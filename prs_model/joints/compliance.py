@@ -37,13 +37,13 @@ class JointCompliance:
         """Basis (6, 6 - m) of the relative displacements that meet no resistance."""
         return _null_space(self.wrenches.T)
 
-    @property
+    @cached_property
     def stiffness(self) -> FloatArray:
         """K = W C^+ W^T (6, 6): the elastic directions, zero along free and rigid ones."""
         inverse, _ = self._halves
         return self.wrenches @ inverse @ self.wrenches.T
 
-    @property
+    @cached_property
     def rigid_wrenches(self) -> FloatArray:
         """Wrenches (6, r) whose directions are rigid: rigid_wrenches^T d = 0."""
         _, rigid = self._halves

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 import pinocchio as pin
 
 from ..arrays import FloatArray
+from ..description import MachineDescription
 from ..description.schema import (
     AXES,
+    BallScrew,
+    ConstantDrive,
     DiagonalCompliance,
     DiagonalStiffness,
     ElasticLaw,
-    Joint,
     Stage,
 )
 from ..description.urdf import Urdf
@@ -31,7 +33,7 @@ from .drive import drive_compliance
 Placement = Callable[[str], pin.SE3]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Spring:
     """What holds end B to end A of a joint at one point.
 
@@ -46,20 +48,85 @@ class Spring:
     law: JointCompliance
 
 
-def springs(name: str, joint: Joint, urdf: Urdf, values: dict[str, float], placement: Placement) -> list[Spring]:
-    """The springs of one joint in one configuration (eq. 9-14).
+@dataclass(frozen=True, eq=False)
+class Side:
+    """One of the things that act side by side in a stage: its place in the stage's frame, and its law."""
 
-    Interfaces of a single stage each stay at their own place; so does the drive. Stages in series are gathered
-    in the frame of the first one.
-    """
-    if joint.stages:
-        return [_stages_in_series(name, joint, urdf, values, placement)]
-    frame = placement(_frame(joint, urdf))
-    free = free_axis(joint, urdf)
-    return [
-        Spring(name, interface, joint.between, frame * pin.SE3(np.eye(3), at), law)
-        for interface, at, law in _in_parallel(joint, free, values)
-    ]
+    interface: str | None
+    place: pin.SE3
+    law: JointCompliance
+
+
+@dataclass(frozen=True, eq=False)
+class ElasticStage:
+    """A stage whose constant laws are made: the URDF link whose frame it is in, its interfaces, its drive."""
+
+    frame: str
+    sides: tuple[Side, ...]
+    drive: ConstantDrive | BallScrew | None
+    driven: str | None
+    free: int | None
+
+    def at(self, values: Mapping[str, float]) -> tuple[Side, ...]:
+        """All its sides, the drive's among them, when the URDF joints stand at `values` [m, rad]."""
+        if self.drive is None or self.driven is None or self.free is None:
+            return self.sides
+        law = along_axes({self.free: drive_compliance(self.drive, values[self.driven])})
+        return (*self.sides, Side(None, _place(self.drive.at), law))
+
+    def lumped(self, values: Mapping[str, float]) -> JointCompliance:
+        """All its sides gathered at the origin of its frame (eq. 11, 12)."""
+        return parallel([side.law.moved(_action(side.place)) for side in self.at(values)])
+
+
+@dataclass(frozen=True, eq=False)
+class ElasticJoint:
+    """A joint of the engine, made once per machine: one stage, or several in series."""
+
+    name: str
+    between: tuple[str, str]
+    stages: tuple[ElasticStage, ...]
+    in_series: bool
+    as_printed: bool
+
+    def springs(self, values: Mapping[str, float], placement: Placement) -> list[Spring]:
+        """The springs in one configuration (eq. 9-14).
+
+        Interfaces of a single stage each stay at their own place; so does the drive. Stages in series are gathered
+        in the frame of the first one.
+        """
+        if self.in_series:
+            return [self._chain(values, placement)]
+        stage = self.stages[0]
+        frame = placement(stage.frame)
+        return [
+            Spring(self.name, side.interface, self.between, frame * side.place, side.law) for side in stage.at(values)
+        ]
+
+    def _chain(self, values: Mapping[str, float], placement: Placement) -> Spring:
+        frames = [placement(stage.frame) for stage in self.stages]
+        laws = [stage.lumped(values) for stage in self.stages]
+        actions = [_action(frames[0].inverse() * frame) for frame in frames]
+        if self.as_printed:
+            law = series_as_printed(laws, actions)
+        else:
+            law = series([stage.moved(action) for stage, action in zip(laws, actions, strict=True)])
+        return Spring(self.name, None, self.between, frames[0], law)
+
+
+def elastic_joints(description: MachineDescription) -> tuple[ElasticJoint, ...]:
+    """All joints of a machine, with everything that does not depend on the pose worked out."""
+    urdf = description.urdf
+    return tuple(
+        ElasticJoint(
+            name,
+            joint.between,
+            tuple(_stage(stage, urdf) for stage in joint.stages or (joint,)),
+            bool(joint.stages),
+            joint.as_printed,
+        )
+        for name, joint in description.joints.items()
+    )
 
 
 def free_axis(stage: Stage, urdf: Urdf) -> int | None:
@@ -86,44 +153,19 @@ def elastic_law(law: ElasticLaw, free: int | None) -> JointCompliance:
     return JointCompliance(np.eye(6)[:, constrained], compliance[np.ix_(constrained, constrained)])
 
 
-def _in_parallel(
-    stage: Stage, free: int | None, values: dict[str, float]
-) -> list[tuple[str | None, FloatArray, JointCompliance]]:
-    """Name, place and law of everything that acts side by side in a stage, in axes of the stage's frame."""
-    origin = np.zeros(3)
+def _stage(stage: Stage, urdf: Urdf) -> ElasticStage:
+    free = free_axis(stage, urdf)
     if stage.interfaces:
-        sides = [
-            (face.name, origin if face.at is None else np.array(face.at, dtype=float), elastic_law(face, free))
-            for face in stage.interfaces
-        ]
+        sides = tuple(Side(face.name, _place(face.at), elastic_law(face, free)) for face in stage.interfaces)
     else:
-        sides = [(None, origin, elastic_law(stage, free))]
-    if stage.drive is not None and stage.urdf is not None and free is not None:
-        at = origin if stage.drive.at is None else np.array(stage.drive.at, dtype=float)
-        sides.append((None, at, along_axes({free: drive_compliance(stage.drive, values[stage.urdf])})))
-    return sides
+        sides = (Side(None, pin.SE3.Identity(), elastic_law(stage, free)),)
+    frame = urdf.joints[stage.urdf].child if stage.urdf is not None else str(stage.frame)
+    return ElasticStage(frame, sides, stage.drive, stage.urdf, free)
 
 
-def _stages_in_series(name: str, joint: Joint, urdf: Urdf, values: dict[str, float], placement: Placement) -> Spring:
-    frames = [placement(_frame(stage, urdf)) for stage in joint.stages]
-    laws = [_lumped(stage, free_axis(stage, urdf), values) for stage in joint.stages]
-    actions = [np.asarray((frames[0].inverse() * frame).toActionMatrix()) for frame in frames]
-    if joint.as_printed:
-        law = series_as_printed(laws, actions)
-    else:
-        law = series([stage.moved(action) for stage, action in zip(laws, actions, strict=True)])
-    return Spring(name, None, joint.between, frames[0], law)
+def _place(at: tuple[float, float, float] | None) -> pin.SE3:
+    return pin.SE3.Identity() if at is None else pin.SE3(np.eye(3), np.array(at, dtype=float))
 
 
-def _lumped(stage: Stage, free: int | None, values: dict[str, float]) -> JointCompliance:
-    """All of a stage's interfaces and its drive, gathered at the origin of its frame (eq. 11, 12)."""
-    gathered = [
-        law.moved(np.asarray(pin.SE3(np.eye(3), at).toActionMatrix()))
-        for _, at, law in _in_parallel(stage, free, values)
-    ]
-    return parallel(gathered)
-
-
-def _frame(stage: Stage, urdf: Urdf) -> str:
-    """The URDF link whose frame the stage's axes are: the child link of its joint, or the frame it names."""
-    return urdf.joints[stage.urdf].child if stage.urdf is not None else str(stage.frame)
+def _action(placement: pin.SE3) -> FloatArray:
+    return np.asarray(placement.toActionMatrix())

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
-from ..arrays import FloatArray
+from ..arrays import BoolArray, FloatArray
 from ..synthesis.system import System
 
 _OUTPUT_AXES = ("along u", "along v", "along w", "about u", "about v", "about w")
@@ -91,13 +91,24 @@ def _alone(motion: _BodyMotion, mode: int) -> str:
 
 
 def _together(bodies: Sequence[str], stem: str, motions: Mapping[str, _BodyMotion], mode: int) -> str:
+    """Of several like bodies: which take part, along or about which of their own axes, and in which phase."""
     energy = np.array([motions[body].energy[mode] for body in bodies])
-    moving = [body for body, share in zip(bodies, energy / energy.max(), strict=True) if share > _MOVING_SHARE]
-    numbers = " ".join(body.removeprefix(stem).lstrip("_") for body in moving)
-    which = "" if len(moving) == len(bodies) else f"{numbers} "
-    if not all(motions[body].is_rigid(mode) for body in moving):
-        return f"{which}deforming"
-    axis = int(np.argmax(sum(motions[body].own[:, mode] ** 2 for body in moving)))
-    signs = {float(np.sign(motions[body].own[axis, mode])) for body in moving}
-    phase = "" if len(moving) == 1 else " in phase" if len(signs) == 1 else " out of phase"
-    return f"{which}{_OWN_AXES[axis]}{phase}"
+    own = np.array([motions[body].own[:, mode] for body in bodies])
+    if (own**2).sum() < _RIGID_SHARE * energy.sum():
+        return f"{_which(bodies, stem, energy)}deforming"
+    axis = int(np.argmax((own**2).sum(axis=0)))
+    along = own[:, axis]
+    signs = set(np.sign(along[_takes_part(along**2)]))
+    phase = "" if np.sum(_takes_part(along**2)) == 1 else " in phase" if len(signs) == 1 else " out of phase"
+    return f"{_which(bodies, stem, along**2)}{_OWN_AXES[axis]}{phase}"
+
+
+def _takes_part(energy: FloatArray) -> BoolArray:
+    return np.asarray(energy > _MOVING_SHARE * energy.max())
+
+
+def _which(bodies: Sequence[str], stem: str, energy: FloatArray) -> str:
+    """The numbers of the bodies that take part, nothing if all do."""
+    part = _takes_part(energy)
+    numbers = [body.removeprefix(stem).lstrip("_") for body, moves in zip(bodies, part, strict=True) if moves]
+    return "" if part.all() else " ".join(numbers) + " "

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from scipy.linalg import LinAlgError, cholesky, eigh
 
@@ -10,22 +12,24 @@ from ..errors import PrsError
 
 _PIVOT_TOLERANCE = 1e-12
 _MASS_TOLERANCE = 1e-14
+_INDEFINITE = 1e-9
 
 
-def lowest_modes(mass: FloatArray, stiffness: FloatArray, count: int) -> tuple[FloatArray, FloatArray]:
+def lowest_modes(
+    mass: FloatArray, stiffness: FloatArray, count: int, labels: Sequence[object] | None = None
+) -> tuple[FloatArray, FloatArray]:
     """Eigenvalues (k,) [rad^2/s^2] ascending and mass-normalised shapes (n, k), k = min(count, rank of M).
 
     Solved as M x = mu (K - s M) x with mu = 1 / (lambda - s), so that directions without mass are modes of
     infinite frequency and drop out. The shift s is zero where K is positive definite, and below zero for a
     free or partly free structure. Each shape's largest entry is positive.
-    Raises PrsError when a direction has neither mass nor stiffness.
+    Raises PrsError when a direction has neither mass nor stiffness, or K is indefinite; `labels` name the coordinates.
     """
-    shift, pencil = _positive_definite(mass, stiffness)
+    shift, pencil = _positive_definite(mass, stiffness, labels)
     scale = 1.0 / np.sqrt(np.diag(pencil))
     scaling = np.outer(scale, scale)
     n = len(scale)
-    first = max(n - count, 0)
-    mu, vectors = eigh(mass * scaling, pencil * scaling, subset_by_index=[first, n - 1])
+    mu, vectors = eigh(mass * scaling, pencil * scaling, subset_by_index=[max(n - count, 0), n - 1])
     mu, vectors = mu[::-1], vectors[:, ::-1]
     heavy = mu > _MASS_TOLERANCE * mu[0]
     mu, shapes = mu[heavy], (vectors * scale[:, None])[:, heavy]
@@ -34,29 +38,54 @@ def lowest_modes(mass: FloatArray, stiffness: FloatArray, count: int) -> tuple[F
     return 1.0 / mu + shift, shapes * signs
 
 
-def _positive_definite(mass: FloatArray, stiffness: FloatArray) -> tuple[float, FloatArray]:
+def slowest_rate(mass: FloatArray, stiffness: FloatArray) -> float:
+    """The smallest K_ii / M_ii [rad^2/s^2] of a coordinate that is held: a scale above the first elastic eigenvalue."""
+    m, k = np.diag(mass), np.diag(stiffness)
+    rates = k[m > 0] / m[m > 0]
+    held = rates[rates > 1e-12 * rates.max(initial=0.0)]
+    return float(held.min()) if held.size else 1.0
+
+
+def _positive_definite(
+    mass: FloatArray, stiffness: FloatArray, labels: Sequence[object] | None
+) -> tuple[float, FloatArray]:
     """The shift s and the positive definite K - s M."""
     if _is_positive_definite(stiffness):
         return 0.0, stiffness
-    heavy = np.diag(mass) > 0
-    if heavy.any():
-        shift = -1e-3 * float(np.min(np.diag(stiffness)[heavy] / np.diag(mass)[heavy]))
-        shifted = stiffness - shift * mass
-        if shift < 0 and _is_positive_definite(shifted):
-            return shift, shifted
-    raise PrsError(
-        "the system is singular: a coordinate can move with neither stiffness nor mass against it; "
-        "check for a joint that frees the same rotation twice, or a node that nothing holds"
-    )
+    shift = -1e-3 * slowest_rate(mass, stiffness)
+    shifted = stiffness - shift * mass
+    if _is_positive_definite(shifted):
+        return shift, shifted
+    raise PrsError(_what_is_wrong(mass, stiffness, labels))
 
 
 def _is_positive_definite(matrix: FloatArray) -> bool:
-    diagonal = np.diag(matrix)
-    if not np.all(diagonal > 0):
+    if not np.all(np.diag(matrix) > 0):
         return False
-    scale = 1.0 / np.sqrt(diagonal)
     try:
-        factor = cholesky(matrix * np.outer(scale, scale), lower=True)
+        factor = cholesky(_unit_diagonal(matrix), lower=True)
     except LinAlgError:
         return False
     return bool(np.min(np.diag(factor)) ** 2 > _PIVOT_TOLERANCE * len(matrix))
+
+
+def _unit_diagonal(matrix: FloatArray) -> FloatArray:
+    diagonal = np.abs(np.diag(matrix))
+    scale = 1.0 / np.sqrt(np.where(diagonal > 0, diagonal, 1.0))
+    return np.asarray(matrix * np.outer(scale, scale))
+
+
+def _what_is_wrong(mass: FloatArray, stiffness: FloatArray, labels: Sequence[object] | None) -> str:
+    values, vectors = eigh(_unit_diagonal(stiffness), subset_by_index=[0, 0])
+    if values[0] < -_INDEFINITE:
+        return (
+            f"the stiffness of the system is indefinite (scaled eigenvalue {values[0]:.3g}); "
+            "check the parts' matrices with their physics gate, and joint stiffness matrices for wrong signs"
+        )
+    vectors = eigh(_unit_diagonal(stiffness + slowest_rate(mass, stiffness) * mass), subset_by_index=[0, 0])[1]
+    worst = int(np.argmax(np.abs(vectors[:, 0])))
+    where = f" at {labels[worst]}" if labels is not None else f" at coordinate {worst}"
+    return (
+        f"the system is singular{where}: a motion meets neither stiffness nor mass; "
+        "check for a joint that frees the same rotation twice, or a node that nothing holds"
+    )

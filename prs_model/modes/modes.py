@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import BoolArray, FloatArray
 from ..errors import PrsError
 from ..synthesis.system import System
 from .character import Character, characters
-from .eigen import lowest_modes
+from .eigen import lowest_modes, slowest_rate
+
+_RIGID = 1e-8
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Modes:
     """Natural frequencies [Hz] ascending and mass-normalised shapes (n, k) on the system's coordinates."""
 
@@ -22,10 +25,18 @@ class Modes:
     eigenvalues: FloatArray
     shapes: FloatArray
 
+    def __repr__(self) -> str:
+        return f"Modes({', '.join(f'{f:.4g}' for f in self.frequencies)} Hz)"
+
     @property
     def frequencies(self) -> FloatArray:
         """(k,) [Hz]; zero for rigid-body modes."""
-        return np.asarray(np.sqrt(np.maximum(self.eigenvalues, 0.0)) / (2.0 * np.pi))
+        return np.asarray(np.sqrt(np.where(self.is_rigid, 0.0, self.eigenvalues)) / (2.0 * np.pi))
+
+    @cached_property
+    def is_rigid(self) -> BoolArray:
+        """(k,) whether a mode strains nothing: its eigenvalue is round-off beside those of the held coordinates."""
+        return np.asarray(self.eigenvalues <= _RIGID * slowest_rate(self.system.mass, self.system.stiffness))
 
     @property
     def output_shapes(self) -> FloatArray:
@@ -46,7 +57,8 @@ class Modes:
         Rigid-body modes have none: their shares are zero.
         """
         bodies = {name: _quadratic(self.body_shapes(name), e.stiffness) for name, e in self.system.elements.items()}
-        return _shares(bodies | self._joint_energy())
+        energy = bodies | self._joint_energy()
+        return _shares({name: np.where(self.is_rigid, 0.0, part) for name, part in energy.items()})
 
     def characters(self) -> tuple[Character, ...]:
         """What moves in each mode, and along or about what."""
@@ -61,10 +73,11 @@ class Modes:
 
 
 def modes_of(system: System, count: int) -> Modes:
-    """The lowest `count` modes of a system. Raises PrsError when `count` is not at least one."""
-    if count < 1:
-        raise PrsError(f"found {count} modes asked for, expected at least 1")
-    return Modes(system, *lowest_modes(system.mass, system.stiffness, count))
+    """The lowest `count` modes of a system. Raises PrsError when `count` is not a whole number above zero."""
+    if not isinstance(count, int | np.integer) or isinstance(count, bool) or count < 1:
+        raise PrsError(f"found {count!r} modes asked for, expected a whole number above zero")
+    labels = [" ".join(filter(None, row)) for row in system.index]
+    return Modes(system, *lowest_modes(system.mass, system.stiffness, int(count), labels))
 
 
 def _quadratic(shapes: FloatArray, matrix: FloatArray) -> FloatArray:

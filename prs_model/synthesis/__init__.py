@@ -1,6 +1,6 @@
 """Substructure synthesis: bodies and joints become one labelled system."""
 
-from .assemble import assemble
+from .assembly import assemble
 from .system import Coordinate, SpringMotion, System
 
 __all__ = ["Coordinate", "SpringMotion", "System", "assemble"]

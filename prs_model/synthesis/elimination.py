@@ -8,22 +8,24 @@ from scipy.linalg import qr, solve_triangular
 from ..arrays import FloatArray, IntArray
 
 _RANK_TOLERANCE = 1e-9
+_ROUND_OFF = 1e-10
 
 
-def independent_coordinates(constraints: FloatArray) -> tuple[FloatArray, IntArray]:
+def independent_coordinates(constraints: FloatArray, sizes: FloatArray) -> tuple[FloatArray, IntArray]:
     """Solve G u = 0 for the dependent coordinates.
 
     Returns the expansion T (n, m) with u = T u[kept] and G T = 0, and the kept coordinates (m,) in ascending
-    order. Rows of G (r, n) may be redundant. The dependent ones are chosen by QR with column pivoting.
+    order. Rows of G (r, n) may be redundant; one whose norm is round-off beside its `size` (r,), the norm of what was
+    subtracted in it, constrains nothing. The dependent coordinates are chosen by QR with column pivoting.
     """
     n = constraints.shape[1]
-    if constraints.shape[0] == 0:
+    norms = np.linalg.norm(constraints, axis=1)
+    real = norms > _ROUND_OFF * sizes
+    if not real.any():
         return np.eye(n), np.arange(n)
-    norms = np.linalg.norm(constraints, axis=1, keepdims=True)
-    scaled = constraints / np.where(norms > 0, norms, 1.0)
-    _, triangle, order = qr(scaled, mode="economic", pivoting=True)
+    _, triangle, order = qr(constraints[real] / norms[real, None], mode="economic", pivoting=True)
     diagonal = np.abs(np.diag(triangle))
-    rank = int(np.sum(diagonal > _RANK_TOLERANCE * diagonal[0])) if diagonal[0] > 0 else 0
+    rank = int(np.sum(diagonal > _RANK_TOLERANCE * diagonal[0]))
     dependent, kept = order[:rank], np.sort(order[rank:])
     position = np.empty(n, dtype=np.intp)
     position[kept] = np.arange(n - rank)

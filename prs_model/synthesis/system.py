@@ -27,7 +27,7 @@ class Coordinate(NamedTuple):
     dof: str
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SpringMotion:
     """Relative displacement D (6, k) of a spring's ends on body coordinates `rows` (k,), and its stiffness (6, 6)."""
 
@@ -38,7 +38,7 @@ class SpringMotion:
     stiffness: FloatArray
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class System:
     """M u'' + C u' + K u = f in one configuration (eq. 16, 17), SI units, displacements in body axes.
 
@@ -60,6 +60,13 @@ class System:
     configuration: Configuration
     stems: Mapping[str, str]
     damping_model: Damping
+
+    def __post_init__(self) -> None:
+        for matrix in (self.mass, self.stiffness, self.expansion, self.output):
+            matrix.setflags(write=False)
+
+    def __repr__(self) -> str:
+        return f"System({self.size} coordinates, {len(self.elements)} bodies, {len(self.springs)} springs)"
 
     @property
     def size(self) -> int:

@@ -57,3 +57,13 @@ def test_a_coordinate_that_nothing_holds_is_an_error() -> None:
     mass[2, 2] = 0.0
     with pytest.raises(PrsError, match="neither stiffness nor mass"):
         lowest_modes(mass, stiffness, 1)
+
+
+def test_a_free_mass_beside_a_held_one_is_a_rigid_body_mode() -> None:
+    values, _ = lowest_modes(np.eye(2), np.diag([1e6, 0.0]), 2)
+    np.testing.assert_allclose(values, [0.0, 1e6], rtol=1e-12, atol=1e-6)
+
+
+def test_an_indefinite_stiffness_is_named() -> None:
+    with pytest.raises(PrsError, match="indefinite"):
+        lowest_modes(np.eye(2), np.array([[1.0, 2.0], [2.0, 1.0]]), 1)

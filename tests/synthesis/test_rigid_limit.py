@@ -92,7 +92,7 @@ def test_rigid_machine_equals_crba_on_the_closure_null_space(name: str, pose: di
         body: rigid_twin(part, configuration.joint_values.get(getattr(part, "joint", ""), 0.0))
         for body, part in machine.parts.items()
     }
-    system = assemble(machine.description, elements, configuration)
+    system = assemble(machine.description, elements, machine.joints, configuration)
     expected = pinocchio_frequencies(machine, configuration, elements)
     assert system.size == len(machine.pose_names)
     np.testing.assert_allclose(system.modes(system.size).frequencies, expected, rtol=1e-8)

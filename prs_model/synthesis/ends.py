@@ -1,0 +1,78 @@
+"""Reading the motion of joint ends and of the output point from the bodies' coordinates."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pinocchio as pin
+
+from ..arrays import FloatArray, IntArray
+from ..description.schema import Output
+from ..errors import UnknownNameError
+from ..joints import Spring
+from ..reduction import SuperElement
+
+
+@dataclass(frozen=True, eq=False)
+class RelativeDisplacement:
+    """Motion (6, k) of end B less that of end A on the coordinates `rows` (k,), in the spring's axes.
+
+    `size` (6, k) is the sum of the two motions' magnitudes: entries far below it are round-off.
+    """
+
+    rows: IntArray
+    motion: FloatArray
+    size: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Ends:
+    """The bodies of a machine in one configuration: elements, rows among all coordinates, placements in the world."""
+
+    elements: Mapping[str, SuperElement]
+    blocks: Mapping[str, slice]
+    placements: Mapping[str, pin.SE3]
+
+    def relative_displacement(self, spring: Spring) -> RelativeDisplacement:
+        """What the spring feels; both ends may be on one body, one may be the ground."""
+        signed = [(end, sign) for end, sign in zip(spring.between, (-1.0, 1.0), strict=True) if end != "ground"]
+        motions = [(sign, *self._motion(end, spring.interface, spring.placement)) for end, sign in signed]
+        rows, place = np.unique(np.concatenate([rows for _, rows, _ in motions]), return_inverse=True)
+        motion, size = np.zeros((len(rows), 6)), np.zeros((len(rows), 6))
+        np.add.at(motion, place, np.hstack([sign * each for sign, _, each in motions]).T)
+        np.add.at(size, place, np.abs(np.hstack([each for _, _, each in motions])).T)
+        return RelativeDisplacement(rows, motion.T, size.T)
+
+    def output(self, output: Output, frame: pin.SE3) -> tuple[IntArray, FloatArray]:
+        """Rows (k,) and (6, k): the motion of the end-reference point in the axes of the output frame."""
+        body, node = output.node.split(".", 1)
+        element = self.elements[body]
+        position = self.placements[body].act(element.positions[element.node(node)])
+        return self._motion(output.node, None, pin.SE3(frame.rotation, position))
+
+    def _motion(self, end: str, interface: str | None, place: pin.SE3) -> tuple[IntArray, FloatArray]:
+        body, node = end.split(".", 1)
+        element, block = self.elements[body], self.blocks[body]
+        nodes = _nodes(element, node, interface)
+        to_place = place.inverse() * self.placements[body]
+        motion = sum(_seen_from(to_place, element, k) for k in nodes) / len(nodes)
+        return np.arange(block.start, block.stop), np.asarray(motion)
+
+
+def _seen_from(to_place: pin.SE3, element: SuperElement, k: int) -> FloatArray:
+    node = to_place * pin.SE3(np.eye(3), element.positions[k])
+    return np.asarray(node.toActionMatrix() @ element.motions[k])
+
+
+def _nodes(element: SuperElement, node: str, interface: str | None) -> Sequence[int]:
+    """The interface's own node, else the joint's, else all nodes of the joint's interfaces (their mean is taken)."""
+    names = element.nodes
+    for name in (f"{node}.{interface}", node):
+        if name in names:
+            return [names.index(name)]
+    found = [k for k, name in enumerate(names) if name.startswith(f"{node}.")]
+    if not found:
+        raise UnknownNameError(f"node of {element.name}", node, names)
+    return found

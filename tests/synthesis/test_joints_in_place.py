@@ -1,0 +1,46 @@
+"""Joints where they need not be: inside a rigid body, missing, or holding nothing."""
+
+from dataclasses import replace
+
+import numpy as np
+import pinocchio as pin
+import pytest
+
+import prs_model as prs
+from prs_model.joints import along_axes
+from prs_model.joints.springs import ElasticJoint, ElasticStage, Side
+from prs_model.synthesis import System, assemble
+
+
+@pytest.fixture(scope="module")
+def hexapod() -> prs.Machine:
+    return prs.load_machine("hexapod")
+
+
+def with_link_inside_the_platform(machine: prs.Machine, compliance: float) -> System:
+    law = along_axes(dict.fromkeys(range(6), compliance))
+    stage = ElasticStage("platform", (Side(None, pin.SE3.Identity(), law),), None, None, None)
+    link = ElasticJoint("link", ("platform.joint_1", "platform.joint_4"), (stage,), False, False)
+    return assemble(machine.description, machine.parts, (*machine.joints, link), machine.configuration())
+
+
+@pytest.mark.parametrize("compliance", [1e-9, 0.0])
+def test_a_link_inside_a_rigid_body_changes_nothing(hexapod: prs.Machine, compliance: float) -> None:
+    linked = with_link_inside_the_platform(hexapod, compliance)
+    assert linked.size == 6
+    np.testing.assert_allclose(linked.modes(6).frequencies, hexapod.modes(6).frequencies, rtol=1e-9)
+
+
+def test_without_drives_the_hexapod_is_a_mechanism(hexapod: prs.Machine) -> None:
+    """Six rigid-body modes, at zero and without strain energy."""
+    limp = [
+        replace(joint, stages=tuple(replace(stage, drive=None) for stage in joint.stages)) for joint in hexapod.joints
+    ]
+    modes = assemble(hexapod.description, hexapod.parts, limp, hexapod.configuration()).modes(6)
+    np.testing.assert_array_equal(modes.frequencies, 0.0)
+    assert not any(share.any() for share in modes.strain_energy().values())
+
+
+def test_systems_cannot_be_changed_by_accident(hexapod: prs.Machine) -> None:
+    with pytest.raises(ValueError, match="read-only"):
+        hexapod.assemble().mass[0, 0] = 1.0
