@@ -5,11 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from .rigid_motion import cross_matrix
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

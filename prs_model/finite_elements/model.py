@@ -7,17 +7,14 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
+from ..arrays import FloatArray, IntArray
 from ..description.schema import Selection
 from ..errors import PartFileError, PrsError
 from .mass import MassProperties, mass_properties
 from .rigid_motion import transfer
 from .selection import select, unknown_set
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)

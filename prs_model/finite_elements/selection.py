@@ -7,17 +7,16 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import BoolArray, FloatArray, IntArray
 from ..description.schema import Box, Cylinder, NodeId, Selection
 from ..errors import PartFileError
 
 if TYPE_CHECKING:
     from .model import FiniteElementModel
 
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
-Mask = NDArray[np.bool_]
+Mask = BoolArray
 
 SLACK = 1e-6  # of the part's size: nodes this close to the face of a box count as inside
 

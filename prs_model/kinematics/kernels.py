@@ -5,11 +5,13 @@ A batch of frames is a pair: rotations (N, ..., 3, 3) and positions (N, ..., 3),
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.intp]
+IntArray = NDArray[np.integer[Any]]
 BoolArray = NDArray[np.bool_]
 
 _SMALL_ANGLE = 1e-4

@@ -93,8 +93,8 @@ def _draw_mode(plt: SimpleNamespace, axes: Any, bodies: Sequence[_BodyPicture], 
 def _body_picture(modes: Modes, name: str) -> _BodyPicture:
     element, placement = modes.system.elements[name], modes.system.placements[name]
     if element.surface is not None:
-        points, cells = element.surface.points, np.asarray(element.surface.triangles)
-        recovery = np.asarray(element.surface.recovery, dtype=float)
+        surface = element.surface
+        points, cells, recovery = surface.points, surface.triangles, surface.recovery.astype(float)
     else:
         points, cells, recovery = _star(element.positions, element.motions[:, :3])
     displacements = np.einsum("pin,nk->kpi", recovery, modes.body_shapes(name))

@@ -5,14 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import qr
 from scipy.sparse import csr_array
 
+from ..arrays import FloatArray
 from .factorize import Solve, factorize
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 ConstrainedSolve = Callable[[FloatArray, FloatArray], FloatArray]
 

@@ -12,17 +12,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csr_array, eye_array, vstack
 
+from ..arrays import BoolArray, FloatArray
 from ..finite_elements import FiniteElementModel
 from .coupling import Tie, averaging_matrix, check_ties, rigidified
 from .craig_bampton import HeldPart, Reduction, fixed_interface_modes, hold, response, static_modes
 from .from_model import to_element
 from .super_element import SuperElement
-
-FloatArray = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
 
 logger = logging.getLogger("prs_model")
 

@@ -10,19 +10,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import eigh
 from scipy.sparse import csr_array, vstack
 from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh
 
+from ..arrays import BoolArray, FloatArray, IntArray
 from ..errors import PartFileError, PhysicsError
 from ..finite_elements import FiniteElementModel
 from .constrained import ConstrainedSolve, constrained_solver
 from .coupling import Tie, averaging_matrix, check_ties, rigid_rows
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,7 +126,7 @@ def _solver(model: FiniteElementModel, interior: IntArray, constraints: csr_arra
         raise PhysicsError(model.name, "part is held by its interfaces", 0.0, 0.0, cause) from error
 
 
-def _check_one_piece(model: FiniteElementModel, is_tied: NDArray[np.bool_]) -> None:
+def _check_one_piece(model: FiniteElementModel, is_tied: BoolArray) -> None:
     """Raises PhysicsError when a piece of the mesh is joined to nothing: not to the rest, a rigid tie or the ground."""
     pieces, of_row = connected_components(model.stiffness, directed=False)
     if pieces == 1:

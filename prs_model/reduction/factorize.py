@@ -7,11 +7,11 @@ from collections.abc import Callable
 from importlib.util import find_spec
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csc_array, csr_array, triu
 from scipy.sparse.linalg import splu
 
-FloatArray = NDArray[np.float64]
+from ..arrays import FloatArray
+
 Solve = Callable[[FloatArray], FloatArray]
 
 logger = logging.getLogger("prs_model")

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..description.schema import Interface
 from ..errors import PartFileError
 from ..finite_elements import FiniteElementModel
@@ -17,8 +17,6 @@ from .interfaces import interface_ties
 from .recipe import Settings
 from .super_element import SuperElement, node_labels
 from .surface import decimate
-
-FloatArray = NDArray[np.float64]
 
 
 def reduce_model(

@@ -6,13 +6,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..errors import PhysicsError
 from ..finite_elements.rigid_motion import transfer
 from .super_element import SuperElement
-
-FloatArray = NDArray[np.float64]
 
 SYMMETRY, DEFINITE, RIGID, TRANSLATION, MODAL = 1e-9, 1e-9, 1e-8, 1e-6, 1e-8
 

@@ -5,17 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray, IntArray
 from ..description.schema import Interface, Member, Point, Selection
 from ..errors import PartFileError
 from ..finite_elements import FiniteElementModel
 from ..finite_elements.selection import select
 from .coupling import Tie
 from .recipe import Settings
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 STILL = np.zeros(3)
 

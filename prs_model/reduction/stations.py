@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..description.schema import Interface, Travel
 from ..errors import PartFileError
 from ..finite_elements import FiniteElementModel
@@ -19,8 +19,6 @@ from .interfaces import interface_ties
 from .recipe import Settings
 from .super_element import SuperElement
 from .travelling import TravellingElement
-
-FloatArray = NDArray[np.float64]
 
 
 def travelling_interface(interfaces: Mapping[str, Interface], source: str) -> tuple[str, Travel] | None:

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..errors import PrsError
 from ..finite_elements.mass import MassProperties, mass_properties
 from ..finite_elements.rigid_motion import transfer
@@ -19,7 +19,6 @@ from .surface import Surface
 if TYPE_CHECKING:
     from .gate import GateReport
 
-FloatArray = NDArray[np.float64]
 
 AXES = ("ux", "uy", "uz", "rx", "ry", "rz")
 

@@ -9,10 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, IntArray
 from ..finite_elements import FiniteElementModel
-
-IntArray = NDArray[np.int64]
 
 MOST_TRIANGLES = 1600
 

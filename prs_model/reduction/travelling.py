@@ -7,18 +7,15 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from ..arrays import FloatArray, IntArray
 from ..errors import PrsError
 from ..finite_elements.rigid_motion import transfer
 from .flexibility import congruent, flexibility_form, force_coordinates, force_stiffness, positive_mean
 from .gate import GateReport
 from .super_element import SuperElement, read_only
 from .surface import Surface
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)

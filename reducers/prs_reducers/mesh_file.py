@@ -10,12 +10,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from prs_model.arrays import FloatArray, IntArray
 from prs_model.errors import PartFileError
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 Named = Mapping[str, list[tuple[int, IntArray]]]
 """For each group of the file: the cell blocks it is made of, and which of their cells."""

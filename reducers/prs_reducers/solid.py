@@ -8,11 +8,11 @@ from difflib import get_close_matches
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 from scipy.sparse import csr_array
 
+from prs_model.arrays import IntArray
 from prs_model.description.quantity import Density, Number, Pressure
 from prs_model.description.schema import Section
 from prs_model.description.units import Dimension
@@ -22,8 +22,6 @@ from prs_model.plugins import PartRequest, Reducer
 
 from .mesh_file import TetrahedralMesh, read_mesh
 from .tetrahedra import Material, assemble, face_areas, outer_faces
-
-IntArray = NDArray[np.int64]
 
 logger = logging.getLogger("prs_model")
 

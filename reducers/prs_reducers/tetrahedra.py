@@ -5,13 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array
 
+from prs_model.arrays import FloatArray, IntArray
 from prs_model.errors import MissingExtraError
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 FACES = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])  # corners of a tetrahedron's faces, seen from outside
 CHUNK = 4000  # elements at a time, to bound memory

@@ -13,8 +13,10 @@ from types import ModuleType
 
 import numpy as np
 
+from prs_model.arrays import BoolArray, FloatArray
+
 from .gmsh_solids import Entity, box, cut, cylinder, join, keep_half, keep_sixth, mesh, model, only, prism, ring
-from .solid_mesh import BoolArray, FloatArray, SolidMesh, Where, merged, mirrored, rotated, turned
+from .solid_mesh import SolidMesh, Where, merged, mirrored, rotated, turned
 
 LIMB_ANGLES = (-90.0, 30.0, 150.0)  # degrees; limb 1 points to -y
 

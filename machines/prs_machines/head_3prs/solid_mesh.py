@@ -10,14 +10,11 @@ from typing import Any
 
 import meshio
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from prs_model.arrays import BoolArray, FloatArray, IntArray
 from prs_model.errors import PrsError
 
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
-BoolArray = NDArray[np.bool_]
 Where = Callable[[FloatArray], BoolArray]
 
 # corners of the four faces of a tetrahedron, outward, and the mid-side nodes between them (VTK order)
