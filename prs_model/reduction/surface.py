@@ -33,7 +33,8 @@ def decimate(model: FiniteElementModel, basis: FloatArray, most_triangles: int =
     if model.triangles is None:
         return None
     nodes, local = np.unique(model.triangles, return_inverse=True)
-    points, triangles = model.coordinates[nodes], local.reshape(-1, 3)
+    points: FloatArray = model.coordinates[nodes]
+    triangles: IntArray = local.reshape(-1, 3)
     if len(triangles) > most_triangles:
         points, triangles = _simplified(points, triangles, most_triangles)
     nearest = nodes[cKDTree(model.coordinates[nodes]).query(points)[1]]
