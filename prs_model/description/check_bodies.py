@@ -19,12 +19,11 @@ def check_bodies(subject: Subject) -> None:
     """Check every body of the machine."""
     for name, body in subject.file.bodies.items():
         _check_reducer(subject, ("bodies", name), body)
-    for place, body in subject.each_body():
+    for place, _, body in subject.each_body():
         subject.check_link((*place, "frame"), body.frame)
         _check_ground(subject, place, body)
         for name, interface in body.interfaces.items():
-            written = _as_written(subject.file.bodies[str(place[1])], body, name)
-            _check_interface(subject, (*place, "interfaces", written), interface)
+            _check_interface(subject, interface_place(subject, place, body, name), interface)
 
 
 def options_in_si(body: Body, units: Units) -> dict[str, Any]:
@@ -37,9 +36,10 @@ def _options_class(reducer: str) -> type[Section]:
     return plugins.reducer(reducer).Options
 
 
-def _as_written(entry: Body, instance: Body, name: str) -> str:
-    """The name an instance's interface has in the file, where it may hold a placeholder."""
-    return dict(zip(instance.interfaces, entry.interfaces, strict=True))[name]
+def interface_place(subject: Subject, place: Place, instance: Body, name: str) -> Place:
+    """Where an instance's interface stands in the file; its name there may hold a placeholder."""
+    entry = subject.file.bodies[str(place[1])]
+    return (*place, "interfaces", dict(zip(instance.interfaces, entry.interfaces, strict=True))[name])
 
 
 def _check_reducer(subject: Subject, place: Place, body: Body) -> None:
@@ -51,6 +51,10 @@ def _check_reducer(subject: Subject, place: Place, body: Body) -> None:
         subject.problems.add((*place, "reducer"), message)
         return
     _check_source(subject, place, body, plugin.needs_source)
+    if plugin.needs_source:
+        _check_units(subject, place, body)
+    else:
+        _check_not_reduced(subject, place, body)
     try:
         options_in_si(body, subject.file.units)
     except ValidationError as error:
@@ -71,11 +75,22 @@ def _check_source(subject: Subject, place: Place, body: Body, needed: bool) -> N
     ):
         message = f"found '{body.source}', expected a file in {subject.folder}; make it, or correct the name"
         subject.problems.add((*place, "source"), message)
+
+
+def _check_units(subject: Subject, place: Place, body: Body) -> None:
     if body.units is not None:
         try:
             Units.parse(body.units)
         except ValueError as error:
             subject.problems.add((*place, "units"), str(error))
+
+
+def _check_not_reduced(subject: Subject, place: Place, body: Body) -> None:
+    """A reducer that reads no file has no file's units, and nothing is left to be reduced."""
+    for key in ("units", "modes", "coupling", "tie"):
+        if getattr(body, key) is not None:
+            message = f"found {key}, expected none; it is for part files, and reducer '{body.reducer}' reads none"
+            subject.problems.add((*place, key), message)
 
 
 def _check_ground(subject: Subject, place: Place, body: Body) -> None:
@@ -95,8 +110,6 @@ def _check_interface(subject: Subject, place: Place, interface: Interface) -> No
         subject.problems.add(place, f"found {' and '.join(given)}, expected only one of them")
     _check_selection(subject, place, interface)
     _check_members(subject, place, interface)
-    if interface.travel is not None:
-        _check_travel(subject, (*place, "travel"), interface)
 
 
 def _check_members(subject: Subject, place: Place, interface: Interface) -> None:
@@ -135,20 +148,3 @@ def _check_cylinder(subject: Subject, place: Place, cylinder: Cylinder) -> None:
         subject.problems.add((*place, "axis"), "found a zero axis, expected a direction")
     if cylinder.length is not None and cylinder.length[0] >= cylinder.length[1]:
         subject.problems.add((*place, "length"), "found the bounds in falling order, expected [low, high]")
-
-
-def _check_travel(subject: Subject, place: Place, interface: Interface) -> None:
-    travel = interface.travel
-    if travel is None or subject.urdf is None:
-        return
-    if not any(travel.along):
-        subject.problems.add((*place, "along"), "found a zero vector, expected the direction of travel")
-    if any(a >= b for a, b in zip(travel.stations, travel.stations[1:], strict=False)):
-        subject.problems.add((*place, "stations"), "found values out of order, expected rising values of the joint")
-    joint = subject.urdf.joints.get(travel.joint)
-    if joint is None:
-        movable = subject.urdf.movable
-        subject.problems.add((*place, "joint"), not_known("a joint of the URDF", travel.joint, movable))
-    elif joint.kind != "prismatic":
-        message = f"found '{joint.name}', which is {joint.kind}, expected a prismatic joint"
-        subject.problems.add((*place, "joint"), message)

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from .laws import LAWS, check_law, check_one_of
 from .problems import Place, listed, not_known
 from .schema import BallScrew, ConstantDrive, Drive, Interface, Joint, Stage
 from .subject import Subject
-from .urdf import UrdfJoint
+from .urdf import SLACK, UrdfJoint
 
 
 def check_joints(subject: Subject) -> None:
     """Check every elastic joint of the machine."""
-    for place, joint in subject.each_joint():
+    for place, _, joint in subject.each_joint():
         _check_ends(subject, place, joint)
         _check_interface_names(subject, place, joint)
         if check_one_of(subject.problems, place, joint, (*LAWS, "interfaces", "stages")) and joint.stages:
@@ -26,7 +26,7 @@ def check_joints(subject: Subject) -> None:
 
 def _check_ends(subject: Subject, place: Place, joint: Joint) -> None:
     for index, end in enumerate(joint.between):
-        subject.check_node((*place, "between", index), end, ground=True)
+        subject.check_end((*place, "between", index), end)
     if joint.between[0] == joint.between[1]:
         message = f"found '{joint.between[0]}' twice, expected two different ends"
         subject.problems.add((*place, "between"), message)
@@ -99,6 +99,18 @@ def _check_interface_names(subject: Subject, place: Place, joint: Joint) -> None
             what = f"a member of {' or '.join(members)}"
             subject.problems.add((*where, "name"), not_known(what, interface.name, dict.fromkeys(known)))
         seen.add(interface.name or "")
+    if joint.interfaces and not subject.problems.touches((*place, "interfaces")):
+        _check_members_held(subject, (*place, "interfaces"), members, seen)
+
+
+def _check_members_held(
+    subject: Subject, place: Place, members: Mapping[str, Sequence[str]], named: Collection[str]
+) -> None:
+    for end, names in members.items():
+        idle = [name for name in names if name not in named]
+        if idle:
+            found = f"found none for {listed(idle)} of '{end}', which would carry nothing"
+            subject.problems.add(place, f"{found}, expected one for every member; add it, or leave the member out")
 
 
 def _ends(subject: Subject, joint: Joint) -> Iterator[tuple[str, Interface]]:
@@ -130,9 +142,10 @@ def _check_constant(subject: Subject, place: Place, drive: ConstantDrive, joint:
 
 
 def _check_screw(subject: Subject, place: Place, drive: BallScrew, joint: UrdfJoint) -> None:
-    if joint.lower < drive.origin or joint.upper > drive.origin + drive.length:
+    end = drive.origin + drive.length
+    if joint.lower < drive.origin - SLACK or joint.upper > end + SLACK:
         message = (
-            f"found a screw for joint values {drive.origin:.4g} .. {drive.origin + drive.length:.4g} m, expected the "
+            f"found a screw for joint values {drive.origin:.4g} .. {end:.4g} m, expected the "
             f"limits of '{joint.name}' ({joint.lower:.4g} .. {joint.upper:.4g} m) within; correct 'origin' or 'length'"
         )
         subject.problems.add(place, message)

@@ -17,6 +17,7 @@ _FREE_TEXT = ("note", "title")
 
 def check_names(subject: Subject) -> None:
     """Check names, symmetry groups, ``per`` entries and placeholders."""
+    _check_name(subject, ("name",), subject.file.name)
     _check_groups(subject)
     for kind in ("bodies", "joints", "closures"):
         _check_entries(subject, kind, getattr(subject.file, kind))
@@ -58,7 +59,7 @@ def _check_entries(subject: Subject, kind: str, entries: Mapping[str, Any]) -> N
 
 def _check_name(subject: Subject, place: Place, name: str) -> None:
     if not _NAME.fullmatch(name) or name == "ground":
-        subject.problems.add(place, f"found the name '{name}', expected letters, digits, _ and - (and not 'ground')")
+        subject.problems.add(place, f"found the name {name!r}, expected letters, digits, _ and - (and not 'ground')")
 
 
 def _check_placeholders(subject: Subject, place: Place, raw: Any, allowed: tuple[str, ...]) -> None:

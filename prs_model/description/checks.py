@@ -6,6 +6,8 @@ from .check_bodies import check_bodies
 from .check_joints import check_joints
 from .check_names import check_names
 from .check_task import check_task
+from .check_topology import check_topology
+from .check_travel import check_travel
 from .subject import Subject
 
 
@@ -16,13 +18,15 @@ def check(subject: Subject) -> None:
     check_closures(subject)
     check_bodies(subject)
     check_joints(subject)
+    check_topology(subject)
+    check_travel(subject)
     check_damping(subject)
     check_output(subject)
 
 
 def check_closures(subject: Subject) -> None:
     """Closures join two different frames of the URDF."""
-    for place, closure in subject.each_closure():
+    for place, _, closure in subject.each_closure():
         for index, link in enumerate(closure.between):
             subject.check_link((*place, "between", index), link)
         if closure.between[0] == closure.between[1]:

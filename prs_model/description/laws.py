@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from .problems import Place, Problems, listed
-from .schema import AXES, DiagonalCompliance, DiagonalStiffness, ElasticLaw
+from .schema import AXES, DiagonalCompliance, DiagonalStiffness, ElasticLaw, Stage, StiffnessLaw
 from .urdf import UrdfJoint
 
 LAWS = ("rigid", "stiffness", "compliance")
@@ -48,9 +48,7 @@ def _check_axes(
 
 
 def _check_matrix(problems: Problems, place: Place, matrix: np.ndarray, joint: UrdfJoint | None) -> None:
-    scale = np.sqrt(np.abs(np.diag(matrix)))
-    scale[scale == 0.0] = 1.0
-    scaled = matrix / np.outer(scale, scale)
+    scaled = _scaled(matrix)
     row, column = divmod(int(np.argmax(np.abs(scaled - scaled.T))), 6)
     if abs(scaled[row, column] - scaled[column, row]) > 1e-6:
         message = f"found different entries [{row}][{column}] and [{column}][{row}], expected a symmetric matrix"
@@ -66,6 +64,26 @@ def _check_matrix(problems: Problems, place: Place, matrix: np.ndarray, joint: U
         )
 
 
+def _scaled(matrix: np.ndarray) -> np.ndarray:
+    """With a unit diagonal, so that metres and radians do not matter."""
+    scale = np.sqrt(np.abs(np.diag(matrix)))
+    scale[scale == 0.0] = 1.0
+    return np.asarray(matrix / np.outer(scale, scale))
+
+
 def _freedom(joint: UrdfJoint) -> str:
     motion = "about" if joint.is_rotary else "along"
     return f"'{joint.name}' is free {motion} {joint.free_axis}; use 'drive' for what an actuator holds there"
+
+
+def leaves_free(stage: Stage) -> bool:
+    """Whether some direction meets no stiffness at all in a stage, or in each of its interfaces."""
+    return all(_has_zero(law.stiffness) for law in stage.interfaces or (stage,))
+
+
+def _has_zero(stiffness: StiffnessLaw | None) -> bool:
+    if stiffness is None:
+        return False
+    if isinstance(stiffness, DiagonalStiffness):
+        return any(getattr(stiffness, axis) == 0 for axis in AXES)
+    return bool(np.linalg.eigvalsh(_scaled(np.array(stiffness, dtype=float)))[0] < 1e-9)

@@ -83,8 +83,10 @@ def described(
 
 
 def _machine_file(path: Path) -> Path:
-    if path.is_dir():
+    if path.is_dir() and path.name != FILE_NAME:
         path = path / FILE_NAME
+    if path.is_dir():
+        raise DescriptionError([Problem(str(path), None, "", "is a folder, expected a file")])
     if not path.is_file():
         message = f"found no such file, expected a {FILE_NAME} or the folder of one"
         raise DescriptionError([Problem(str(path), None, "", message)])

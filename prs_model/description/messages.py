@@ -48,7 +48,8 @@ def _message(details: ErrorDetails, root: type[BaseModel], location: Place) -> s
         return f"found nothing, expected an entry; add '{location[-1]}'"
     if kind == "extra_forbidden":
         known = known_fields(root, location[:-1])
-        return f"found an unknown key, expected one of {listed(known, 30)}{did_you_mean(location[-1], known)}"
+        expected = f"one of {listed(known, 30)}{did_you_mean(location[-1], known)}" if known else "no entries"
+        return f"found an unknown key, expected {expected}"
     if kind == "literal_error":
         choices = [str(choice) for choice in _choices(root, location)]
         return f"found {shown(found)}, expected one of {listed(choices)}{did_you_mean(found, choices)}"

@@ -37,6 +37,7 @@ class _Field:
     dimension: Dimension
     positive: bool = False
     non_negative: bool = False
+    below: float | None = None  # for plain ratios
     rigid: bool = False  # the word 'rigid' is read as infinity
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
@@ -48,6 +49,8 @@ class _Field:
             number["exclusiveMinimum"] = 0
         if self.non_negative:
             number["minimum"] = 0
+        if self.below is not None:
+            number["exclusiveMaximum"] = self.below
         if self.rigid:
             number = {"anyOf": [number, {"const": "rigid"}]}
         with_source = {
@@ -79,6 +82,8 @@ class _Field:
             raise PydanticCustomError("positive", f"found {value:g}, expected a number above zero ({unit})")
         if self.non_negative and value < 0:
             raise PydanticCustomError("non_negative", f"found {value:g}, expected zero or more ({unit})")
+        if self.below is not None and value >= self.below:
+            raise PydanticCustomError("below", f"found {value:g}, expected a ratio below {self.below:g}, such as 0.025")
         return Quantity(value * self.dimension.factor(units), source, note)
 
 
@@ -101,6 +106,7 @@ def _unpack(raw: Any, unit: str) -> tuple[Any, Source | None, str | None]:
 
 Number = Annotated[Quantity, _Field(Dimension())]
 Ratio = Annotated[Quantity, _Field(Dimension(), non_negative=True)]
+DampingRatio = Annotated[Quantity, _Field(Dimension(), non_negative=True, below=1.0)]
 Length = Annotated[Quantity, _Field(Dimension(length=1))]
 PositiveLength = Annotated[Quantity, _Field(Dimension(length=1), positive=True)]
 Angle = Annotated[Quantity, _Field(Dimension(angle=1))]

@@ -13,6 +13,7 @@ from .quantity import (
     ComplianceRR,
     ComplianceTR,
     ComplianceTT,
+    DampingRatio,
     Force,
     Length,
     Number,
@@ -249,12 +250,12 @@ class ConstantDrive(Section):
 
 
 class BallScrew(Section):
-    """Nut in series with a screw held at both ends (Table 2 of the paper)."""
+    """Nut in series with a screw held at both ends (Table 2 of the paper), or at the front only: no `rear_bearing`."""
 
     kind: Literal["ball_screw"]
     nut: Stiffness
     front_bearing: Stiffness
-    rear_bearing: Stiffness
+    rear_bearing: Stiffness | None = None
     EA: Force
     length: PositiveLength
     origin: Length  # joint value at which the nut stands at the front bearing
@@ -295,7 +296,7 @@ class Rayleigh(Section):
 class Damping(Section):
     """One modal damping ratio for all modes, or Rayleigh's two constants."""
 
-    modal: Ratio | None = None
+    modal: DampingRatio | None = None
     rayleigh: Rayleigh | None = None
 
 

@@ -16,6 +16,8 @@ from .problems import did_you_mean
 from .urdf_checks import JointKind, Reader, Vector, check_tree
 from .xml_tree import Element, XmlError, parse_xml
 
+SLACK = 1e-9  # m or rad; limits that differ by less are the same
+
 
 @dataclass(frozen=True)
 class Inertial:
@@ -87,20 +89,6 @@ class Urdf:
             hint = did_you_mean(name, self.joints).lstrip("; ").capitalize()
             raise UnknownNameError("joint of the URDF", name, tuple(self.joints), hint)
         return self.joints[name]
-
-    def joint_above(self, link: str) -> UrdfJoint | None:
-        """The joint whose child is `link`; None for the root."""
-        return next((joint for joint in self.joints.values() if joint.child == link), None)
-
-    def chain(self, link: str) -> tuple[UrdfJoint, ...]:
-        """The joints from the root to `link`."""
-        return tuple(reversed(list(self._upwards(link))))
-
-    def _upwards(self, link: str) -> Iterator[UrdfJoint]:
-        joint = self.joint_above(link)
-        while joint is not None:
-            yield joint
-            joint = self.joint_above(joint.parent)
 
 
 def read_urdf(path: Path | str) -> Urdf:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from typing import Any, Literal, cast, get_args
 
@@ -14,6 +15,8 @@ from .xml_tree import Element
 
 Vector = tuple[float, float, float]
 JointKind = Literal["revolute", "continuous", "prismatic", "fixed"]
+
+_NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
 
 FAR = 50.0  # m; beyond this a placement is taken for millimetres
 UNSUPPORTED = {
@@ -33,9 +36,12 @@ class Reader:
         self.problems.append(Problem(self.file, line, entry, message))
 
     def name(self, element: Element) -> str:
-        name = element.attributes.get("name", "").strip()
-        if not name:
+        name = element.attributes.get("name", "")
+        if not name.strip():
             self.add(element.line, f"<{element.tag}>", 'found no name, expected one; add name="..."')
+            return ""
+        if name != name.strip():
+            self.add(element.line, f"{element.tag} '{name}'", "found spaces around the name; remove them")
         elif name == "universe":
             self.add(element.line, f"{element.tag} '{name}'", "the name is taken by Pinocchio; choose another")
         return name
@@ -134,10 +140,7 @@ class Reader:
         if text is None:
             self.add(element.line, entry, f'found no {key}, expected a number; add {key}="..."')
             return default
-        try:
-            value = float(text)
-        except ValueError:
-            value = math.nan
+        value = _number(text.lstrip(" "))
         if math.isfinite(value):
             return value
         self.add(element.line, entry, f'found {key}="{text}", expected a finite number')
@@ -148,15 +151,17 @@ class Reader:
         text = element.attributes.get(key)
         if text is None and default is not None:
             return default
-        try:
-            values = [float(word) for word in (text or "").split()]
-        except ValueError:
-            values = []
+        values = [_number(word) for word in (text or "").split(" ") if word]
         if len(values) == 3 and all(map(math.isfinite, values)):
             return values[0], values[1], values[2]
         found = "nothing" if text is None else f'"{text}"'
         self.add(element.line, f"{entry}: {key}", f"found {found}, expected three finite numbers")
         return default or (1.0, 0.0, 0.0)
+
+
+def _number(text: str) -> float:
+    """A number as Pinocchio reads it; NaN for anything else, such as Python's ``1_0``."""
+    return float(text) if _NUMBER.fullmatch(text) else math.nan
 
 
 def inertia_problem(matrix: tuple[Vector, Vector, Vector]) -> str | None:
@@ -201,7 +206,7 @@ def _check_unique(robot: Element, reader: Reader) -> None:
     for tag in ("link", "joint"):
         seen: dict[str, int] = {}
         for element in robot.all(tag):
-            name = element.attributes.get("name", "").strip()
+            name = element.attributes.get("name", "")
             if name in seen:
                 message = f"found the name a second time (first on line {seen[name]}), expected unique names"
                 reader.add(element.line, f"{tag} '{name}'", message)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ..description.schema import BallScrew, ConstantDrive
+from ..description.urdf import SLACK
 from ..errors import PrsError
 
 
@@ -18,14 +19,18 @@ def ball_screw_compliance(screw: BallScrew, stroke: float) -> float:
     """A nut in series with a screw held at both ends (footnote of Table 2), stroke [m] from the front bearing.
 
     1/k = 1/k_nut + 1/(k_1 + k_2), 1/k_1 = 1/k_front + q/EA, 1/k_2 = 1/k_rear + (L - q)/EA.
+    Without a rear bearing that end floats, and 1/k = 1/k_nut + 1/k_1.
     Raises PrsError when the nut would stand beyond an end of the screw.
     """
-    if not 0.0 <= stroke <= screw.length:
+    if not -SLACK <= stroke <= screw.length + SLACK:
         raise PrsError(
             f"the nut would stand {stroke * 1e3:.1f} mm from the front bearing of a screw "
             f"{screw.length * 1e3:.1f} mm long; check the drive's origin and length"
         )
+    stroke = min(max(stroke, 0.0), screw.length)
     front = 1.0 / screw.front_bearing + stroke / screw.EA
+    if screw.rear_bearing is None:
+        return float(1.0 / screw.nut + front)
     rear = 1.0 / screw.rear_bearing + (screw.length - stroke) / screw.EA
     held = 0.0 if front == 0.0 or rear == 0.0 else 1.0 / (1.0 / front + 1.0 / rear)
     return float(1.0 / screw.nut + held)

@@ -44,16 +44,16 @@ def test_an_instance_is_split_from_its_entry(machine: MachineDescription) -> Non
 
 
 def test_an_instance_splits_once(machine: MachineDescription) -> None:
-    once = replaced(machine, {"bodies.foot_right.modes": 1})
-    twice = replaced(once, {"bodies.foot_left.modes": 2, "bodies.foot_right.options.mass": 16})
-    assert [twice.bodies[name].modes for name in ("foot_left", "foot_right")] == [2, 1]
+    once = replaced(machine, {"bodies.foot_right.options.mass": 20})
+    twice = replaced(once, {"bodies.foot_left.options.mass": 10, "bodies.foot_right.grounded": True})
+    assert [twice.bodies[name].options["mass"] for name in ("foot_left", "foot_right")] == [10.0, 20.0]
     assert twice.stems["foot_left"] == "foot"
 
 
 @pytest.mark.parametrize(
     ("path", "value"),
     [
-        ("bodies.foot.modes", np.int64(5)),
+        ("reduction.modes", np.int64(5)),
         ("reduction.coupling", "averaged"),
         ("joints.X.interfaces[0].at", [90, 0, 0]),
         ("joints.X.interfaces[0].at", np.array([90.0, 0.0, 0.0])),

@@ -26,19 +26,24 @@ task:
     joints: {{{joints}}}
 closures: {{{closures}}}
 bodies:
-  tool: {{frame: {frame}, reducer: rigid, options: {{mass: 1.0, nodes: {{tip: [0, 0, 0]}}}}, interfaces: {{tip: {{}}}}}}
+{bodies}
 joints:
-  mount: {{frame: {frame}, between: [ground, tool.tip], rigid: true}}
-output: {{node: tool.tip, frame: {frame}}}
+{links}
+output: {{node: {frame}.origin, frame: {frame}}}
 """
+BODY = (
+    "{{frame: {0}, reducer: rigid, options: {{mass: 1.0, nodes: {{origin: [0, 0, 0]}}}}, interfaces: {{origin: {{}}}}}}"
+)
+JOINT = "{{{0}, between: [{1}.origin, {2}.origin], rigid: true}}"
 
 
 class Robot:
-    """Collects links and joints of a URDF."""
+    """Collects links and joints of a URDF; each link is a body, each joint rigid but for its free axis."""
 
     def __init__(self, root: str):
         self._links = [root]
         self._joints: list[str] = []
+        self.held: list[str] = []
 
     def add(
         self,
@@ -52,6 +57,8 @@ class Robot:
         limits: tuple[float, float] = (-3.0, 3.0),
     ) -> None:
         self._links.append(child)
+        stands_for = f"frame: {child}" if kind == "fixed" else f"urdf: {name}"
+        self.held.append(f"  {name}: {JOINT.format(stands_for, parent, child)}")
         numbers = [" ".join(f"{value:.17g}" for value in vector) for vector in (xyz, rpy, axis)]
         limit = f'<limit lower="{limits[0]}" upper="{limits[1]}" effort="1" velocity="1"/>'
         self._joints.append(
@@ -61,6 +68,9 @@ class Robot:
             + (limit if kind in ("revolute", "prismatic") else "")
             + "</joint>"
         )
+
+    def bodies(self) -> list[str]:
+        return [f"  {name}: {BODY.format(name)}" for name in self._links]
 
     def text(self) -> str:
         links = "".join(f'<link name="{name}"/>' for name in self._links)
@@ -85,6 +95,8 @@ def machine(
             kind=kind,
             frame=frame,
             relative_to=relative_to,
+            bodies="\n".join(robot.bodies()),
+            links="\n".join(robot.held),
             workspace=", ".join(f"{name}: [{value - 10}, {value + 10}]" for name, value in pose.items()),
             pose=", ".join(f"{name}: {value!r}" for name, value in pose.items()),
             joints=", ".join(f"{name}: {value!r}" for name, value in joints.items()),
