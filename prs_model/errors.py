@@ -7,6 +7,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 
+def short(text: object, limit: int = 120) -> str:
+    """Text for a sentence, its middle left out where it is very long."""
+    whole, half = str(text), limit // 2
+    return whole if len(whole) <= limit else f"{whole[:half]} .. {whole[-half:]}"
+
+
 class PrsError(Exception):
     """Base of all errors of this library: the input, not the program, is at fault."""
 
@@ -39,7 +45,15 @@ class UnknownNameError(PrsError):
     def __init__(self, what: str, name: str, known: Sequence[str], hint: str = ""):
         self.what, self.name, self.known = what, name, tuple(known)
         listed = ", ".join(self.known) or "none"
-        super().__init__(f"unknown {what} '{name}'; known: {listed}" + (f". {hint}" if hint else ""))
+        super().__init__(f"unknown {what} '{short(name)}'; known: {listed}" + (f". {hint}" if hint else ""))
+
+
+class PluginError(PrsError):
+    """An installed plug-in that cannot be used: `name` is registered as `value`, and `cause` is what is wrong."""
+
+    def __init__(self, what: str, name: str, value: str, cause: object):
+        self.what, self.name, self.value, self.cause = what, name, value, cause
+        super().__init__(f"{what} '{name}' (installed as {value}) cannot be used: {cause}")
 
 
 class PartFileError(PrsError):

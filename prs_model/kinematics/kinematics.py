@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from itertools import product
+from numbers import Real
 
 import numpy as np
 import pinocchio as pin
 
 from ..arrays import FloatArray
 from ..description import MachineDescription
-from ..errors import PrsError, UnreachablePoseError
+from ..errors import DescriptionError, Problem, PrsError, UnreachablePoseError
 from ..plugins import task as task_plugin
 from ..plugins import unknown
 from .branch import Branch
@@ -24,6 +26,8 @@ from .tree import pinocchio_values, read_tree
 
 _CHUNK = 1000  # poses solved at once, to bound memory
 _CLOSED_FORM_TOLERANCE = 1e-9  # of its residual [m, rad]
+_CHECKED_SHARES = (0.0, 0.3, 1.0)  # of each range of the workspace: poses at which a closed form is checked
+_LARGEST_VALUE = 1e6  # of a pose coordinate [m, rad]; beyond it no digit of an angle is left
 
 
 class Kinematics:
@@ -42,7 +46,7 @@ class Kinematics:
         section, units = description.file.task, description.file.units
         plugin: type[Task] = task_plugin(section.kind)
         self.description = description
-        self.model = pin.buildModelFromUrdf(str(description.urdf_path))
+        self.model = _pinocchio_model(description)
         self.tree = read_tree(self.model)
         options = plugin.Options.model_validate(section.options, context={"units": units})
         self.task = plugin(self.tree, section, options)
@@ -50,17 +54,18 @@ class Kinematics:
         measured_in = section.relative_to or description.urdf.root
         self.equations = set_up(self.tree, description.closures, self.task, section.frame, measured_in)
         self.reach = Reach(self.tree, self.task.coordinates, description.file.symmetry)
+        pose = self._as_array(description.reference_pose)
         reference = reference_configuration(description, self.equations, self.reach)
-        target = self.task.targets(self._as_array(description.reference_pose))[0]
-        self.branch = Branch(self.equations, reference, target)
+        self.branch = Branch(self.equations, reference, self.task.targets(pose)[0])
         if self.has_closed_form:
+            self._check_closed_form()
             self._check_branch_of_closed_form()
 
     def solve(self, pose: Mapping[str, float]) -> Configuration:
         """The configuration at a pose [m, rad].
 
-        Raises UnreachablePoseError naming limb, joint, value and limits, and PrsError for a pose with missing, unknown
-        or non-finite coordinates.
+        Raises UnreachablePoseError naming limb, joint, value and limits, and PrsError for a pose with missing or
+        unknown coordinates, or values that are no numbers within a million.
         """
         return self._closed_form(self._as_array(pose))[0] if self.has_closed_form else self.newton(pose)
 
@@ -103,15 +108,20 @@ class Kinematics:
         return self._result(poses, q, self._residual(poses, q), errors)
 
     def _closed_form(self, poses: FloatArray) -> Configurations:
+        q = self._closed_form_values(poses)
+        missed = np.flatnonzero(np.isnan(q).any(axis=1))
+        errors = {int(i): self.reach.no_closed_form(poses[i], q[i]) for i in missed}
+        gaps = self._residual(poses, q).max(axis=1, initial=0.0)
+        wide = np.flatnonzero(np.isfinite(gaps) & (gaps > _CLOSED_FORM_TOLERANCE))
+        errors |= {int(i): self.reach.left_open(poses[i], gaps[i]) for i in wide}
+        q[list(errors)] = np.nan
+        return self._result(poses, q, self._residual(poses, q), errors)
+
+    def _closed_form_values(self, poses: FloatArray) -> FloatArray:
         q = self.task.closed_form(poses)
         if q is None:
             raise PrsError(f"task '{self.description.file.task.kind}' gives no closed form at these poses")
-        missed = np.flatnonzero(np.isnan(q).any(axis=1))
-        errors = {int(i): self.reach.no_closed_form(poses[i], q[i]) for i in missed}
-        q[missed] = np.nan
-        residual = self._residual(poses, q)
-        self._check_closed_form(residual)
-        return self._result(poses, q, residual, errors)
+        return q
 
     def _residual(self, poses: FloatArray, q: FloatArray) -> FloatArray:
         """Closure rows, then task rows (N, m), in absolute value; infinite where there is no configuration."""
@@ -131,8 +141,12 @@ class Kinematics:
         gaps = np.max(residual[:, : self.equations.loop_rows], axis=1, initial=0.0)
         return Configurations(self.pose_names, poses, q, gaps, errors, self.tree)
 
-    def _check_closed_form(self, residual: FloatArray) -> None:
-        """A closed form whose loops stay open was made for another geometry than the URDF's."""
+    def _check_closed_form(self) -> None:
+        """A closed form that leaves the loops open in the workspace was made for another geometry than the URDF's."""
+        bounds = self.description.workspace.values()
+        grid = product(*([low + share * (high - low) for share in _CHECKED_SHARES] for low, high in bounds))
+        poses = np.array([list(self.description.reference_pose.values()), *grid])
+        residual = self._residual(poses, self._closed_form_values(poses))
         gap = float(np.max(residual, where=np.isfinite(residual), initial=0.0))
         if gap > _CLOSED_FORM_TOLERANCE:
             message = (
@@ -152,26 +166,41 @@ class Kinematics:
             raise self.description.problem(("task", "reference", "joints"), message)
 
     def _as_array(self, pose: Mapping[str, float]) -> FloatArray:
-        """One pose as (1, d). Raises PrsError for coordinates that are missing, unknown or not finite."""
-        for name in pose:
+        """One pose as (1, d). Raises PrsError for coordinates that are missing, unknown or no numbers."""
+        for name, value in pose.items():
             if name not in self.pose_names:
                 raise unknown("pose coordinate", name, list(self.pose_names))
+            if not isinstance(value, Real) or isinstance(value, bool):
+                raise PrsError(f"pose: found {value!r:.60} for {name}, expected one number [m, rad]")
         missing = [name for name in self.pose_names if name not in pose]
         if missing:
             raise PrsError(f"pose: found no value for {', '.join(missing)}, expected {', '.join(self.pose_names)}")
         return self._checked(np.array([[pose[name] for name in self.pose_names]], dtype=float))
 
     def _checked(self, poses: FloatArray) -> FloatArray:
-        """Poses as a copy (N, d). Raises PrsError for a wrong shape or a number that is not finite."""
-        poses = np.array(poses, dtype=float)
+        """Poses as a copy (N, d). Raises PrsError for a wrong shape or a value that is no number within a million."""
         expected = f"expected (N, {len(self.pose_names)}): {', '.join(self.pose_names)}"
+        try:
+            poses = np.array(poses, dtype=float)
+        except (TypeError, ValueError) as error:
+            raise PrsError(f"poses: found no array of numbers ({error}), {expected}") from error
         if poses.ndim != 2 or poses.shape[1] != len(self.pose_names):
             raise PrsError(f"poses: found an array of shape {poses.shape}, {expected}")
-        wrong = np.argwhere(~np.isfinite(poses))
+        wrong = np.argwhere(~(np.abs(poses) <= _LARGEST_VALUE))
         if wrong.size:
             i, k = wrong[0]
-            raise PrsError(f"pose {i}: found {poses[i, k]} for {self.pose_names[k]}, expected a finite number [m, rad]")
+            where, limit = f"pose {i}" if len(poses) > 1 else "pose", f"{_LARGEST_VALUE:,.0f}"
+            message = f"{where}: found {poses[i, k]:g} for {self.pose_names[k]}, expected a number"
+            raise PrsError(f"{message} between -{limit} and {limit} [m, rad]")
         return poses
+
+
+def _pinocchio_model(description: MachineDescription) -> pin.Model:
+    try:
+        return pin.buildModelFromUrdf(str(description.urdf_path))
+    except (ValueError, RuntimeError) as error:
+        message = f"Pinocchio cannot read it ({error}); correct the URDF"
+        raise DescriptionError([Problem(description.urdf_path.name, None, "", message)]) from error
 
 
 def _chunks(count: int) -> Iterator[slice]:

@@ -1,4 +1,8 @@
-"""Newton's method on one pose, with Pinocchio's frames and anchor constraints: the slow, obvious twin of `newton`."""
+"""Newton's method on one pose, with the closures as Pinocchio's anchor constraints.
+
+It solves single poses; `newton` solves many at once on our own arrays. Neither uses the other's frames or closure
+rows, so that each is a check of the other.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +13,7 @@ import pinocchio as pin
 
 from ..arrays import FloatArray
 from .equations import Equations, Loop, Pair
-from .newton import TOLERANCE
+from .newton import TOLERANCE, least_squares_of_one
 from .tree import Link, pinocchio_values
 
 _ITERATIONS = 20
@@ -32,7 +36,7 @@ def pinocchio_newton(
         residual = np.concatenate(residuals)
         if np.max(np.abs(residual)) <= TOLERANCE:
             return q, True
-        step = np.linalg.lstsq(np.vstack(jacobians), residual, rcond=None)[0]
+        step = least_squares_of_one(np.vstack(jacobians), residual)
         q -= step * min(1.0, 0.5 / max(np.max(np.abs(step)), 0.5))
     return q, False
 

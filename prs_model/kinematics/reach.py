@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import FloatArray
-from ..description.units import Dimension, Units
+from ..description.units import Dimension
 from ..errors import UnreachablePoseError
+from ..readable import pose_text, readable, readable_range
 from .tree import Tree
 
-_READABLE = Units(length="mm", angle="deg")
 _LIMIT_SLACK = 1e-9  # m, rad: rounding of a pose that stands exactly at a limit
 
 
@@ -49,6 +49,10 @@ class Reach:
         )
         return error
 
+    def left_open(self, pose: FloatArray, gap: float) -> UnreachablePoseError:
+        """The error for a pose (d,) at which the closed form leaves a loop or the pose open by `gap` [m, rad]."""
+        return self._error(pose, f"the closed form does not hold there: it leaves a gap of {gap:.3g} (m or rad)")
+
     def cut_off(self, pose: FloatArray, q: FloatArray, share: float) -> UnreachablePoseError:
         """The error for a pose (d,) towards which the machine follows only so far, to configuration q (n,)."""
         way = f"the loops close only up to {100 * share:.1f} % of the way from the reference pose"
@@ -59,14 +63,11 @@ class Reach:
 
     def pose_text(self, pose: FloatArray) -> str:
         """A pose (d,) in words, such as ``nutation=70 deg, z=1275 mm``."""
-        return ", ".join(
-            f"{name}={_in_readable_units(value, dimension)}"
-            for (name, dimension), value in zip(self.coordinates.items(), pose, strict=True)
-        )
+        return pose_text(self._pose(pose), self.coordinates)
 
     def joint_text(self, j: int, value: float) -> str:
         """A value of joint j in words."""
-        return _in_readable_units(value, self._dimension(j))
+        return readable(value, self._dimension(j))
 
     def _error(
         self, pose: FloatArray, what: str, q: FloatArray | None = None, j: int | None = None
@@ -92,8 +93,8 @@ class Reach:
 
     def _stand(self, q: FloatArray, j: int) -> str:
         dimension = self._dimension(j)
-        lower, upper = (_in_readable_units(limit, dimension) for limit in (self.tree.lower[j], self.tree.upper[j]))
-        return f"{_in_readable_units(q[j], dimension)}, limits {lower.split()[0]} .. {upper}"
+        limits = readable_range(self.tree.lower[j], self.tree.upper[j], dimension)
+        return f"{readable(q[j], dimension)}, limits {limits}"
 
     def _dimension(self, j: int) -> Dimension:
         return Dimension(angle=1) if self.tree.revolute[j] else Dimension(length=1)
@@ -108,9 +109,3 @@ class Reach:
 
     def _pose(self, pose: FloatArray) -> dict[str, float]:
         return dict(zip(self.coordinates, map(float, pose), strict=True))
-
-
-def _in_readable_units(value: float, dimension: Dimension) -> str:
-    decimals = 1 if dimension.length else 2
-    unit = dimension.label(_READABLE)
-    return f"{value / dimension.factor(_READABLE):.{decimals}f} {unit}"

@@ -8,9 +8,8 @@ from ..arrays import FloatArray
 from ..description import MachineDescription
 from ..description.problems import Place
 from .equations import Equations
-from .newton import TOLERANCE
+from .newton import TOLERANCE, least_squares_of_one
 from .reach import Reach
-from .tree import Frames
 
 _RANK_TOLERANCE = 1e-5  # relative; what is smaller is a redundant row of a closure written with few digits
 _LARGEST_CORRECTION = 1e-3  # of a stored joint value [m, rad]
@@ -30,7 +29,8 @@ def reference_configuration(description: MachineDescription, equations: Equation
     target = equations.task.targets(pose[None])
     q = _corrected(equations, stored, target)
     problem = (
-        _not_closed(equations, stored, q, target)
+        _never_moves(equations)
+        or _not_closed(equations, stored, q, target)
         or _too_far(reach, stored, q)
         or _beyond_limits(reach, pose, q)
         or _wrong_mobility(equations, q, target)
@@ -47,35 +47,41 @@ def _corrected(equations: Equations, q: FloatArray, target: FloatArray) -> Float
         residual = equations.residual(frames, target)[0]
         if np.max(np.abs(residual), initial=0.0) <= TOLERANCE:
             break
-        step = np.linalg.lstsq(equations.jacobian(frames, target)[0], residual, rcond=_RANK_TOLERANCE)[0]
+        step = least_squares_of_one(equations.jacobian(frames, target)[0], residual, _RANK_TOLERANCE)
         q = q - step * min(1.0, 0.5 / max(np.max(np.abs(step)), 0.5))
     return q
 
 
+def _never_moves(equations: Equations) -> _Problem | None:
+    tool = equations.tool
+    if tool.moves.any():
+        return None
+    message = f"found '{tool.b}', which no joint moves relative to '{tool.a}'; expected the link that the task moves"
+    return ("task", "frame"), message
+
+
 def _not_closed(equations: Equations, stored: FloatArray, q: FloatArray, target: FloatArray) -> _Problem | None:
-    frames = equations.tree.forward(np.stack([stored, q]))
-    targets = np.repeat(target, 2, axis=0)
-    gap = float(np.max(np.abs(equations.residual(frames, targets)[1]), initial=0.0))
+    gap = float(np.max(np.abs(equations.residual(equations.tree.forward(q[None]), target)), initial=0.0))
     if gap <= TOLERANCE:
         return None
     if gap < _LARGEST_CORRECTION:
         return _HERE, (
-            f"found loops that close to {gap:.2g} (m or rad) at best, expected {TOLERANCE:g}; write the URDF's "
-            "origins and axes with all digits, or close a redundant loop by 'point'"
+            f"found a fit to {gap:.2g} m or rad at best ({_gaps(equations, q, target)}), expected {TOLERANCE:g}; write "
+            "the URDF's origins and axes with all digits, or close a redundant loop by 'point'"
         )
-    gaps = _gaps(equations, frames)
     return _HERE, (
-        f"found joint values near which nothing closes the loops in the reference pose ({gaps} as stored), expected "
-        "the joint values of that pose; correct them, the closures or the URDF"
+        f"found joint values near which nothing closes the loops in the reference pose (as stored: "
+        f"{_gaps(equations, stored, target)}), expected the joint values of that pose; correct them, the pose, the "
+        "task's frames, the closures or the URDF"
     )
 
 
-def _gaps(equations: Equations, frames: Frames) -> str:
-    """The loops of the first configuration with their largest gaps in words."""
-    ends = np.cumsum([loop.rows for loop in equations.loops])[:-1]
-    rows = np.split(equations.closure_residual(frames)[0], ends)
-    gaps = (f"{loop.name} open by {np.max(np.abs(row)):.3g}" for loop, row in zip(equations.loops, rows, strict=True))
-    return ", ".join(gaps) + " m or rad" if equations.loops else "no loops"
+def _gaps(equations: Equations, q: FloatArray, target: FloatArray) -> str:
+    """What joint values (n,) leave open, loop by loop and for the pose, in words."""
+    ends = np.cumsum([loop.rows for loop in equations.loops], dtype=int)
+    rows = np.split(np.abs(equations.residual(equations.tree.forward(q[None]), target)[0]), ends)
+    gaps = [f"{loop.name} open by {row.max():.3g}" for loop, row in zip(equations.loops, rows, strict=False)]
+    return ", ".join([*gaps, f"the pose missed by {rows[-1].max():.3g}"]) + " m or rad"
 
 
 def _too_far(reach: Reach, stored: FloatArray, q: FloatArray) -> _Problem | None:

@@ -74,6 +74,31 @@ def test_precession_means_nothing_without_nutation(head: Kinematics) -> None:
     np.testing.assert_allclose(straight.q, straight.q[[0, 0, 0]], atol=1e-12)
 
 
+@pytest.mark.parametrize("turns", [-1, 1, 3])
+def test_full_turns_of_nutation_are_the_same_pose(head: Kinematics, turns: int) -> None:
+    pose = np.array([[0.3, 1.0, 1.275]])
+    turned = pose + np.array([2 * np.pi * turns, 0.0, 0.0])
+    for solve in (head.solve_batch, head.newton_batch):
+        np.testing.assert_allclose(solve(turned).q, solve(pose).q, atol=1e-12)
+
+
+def test_one_bad_pose_leaves_the_others_of_a_batch_alone(head: Kinematics) -> None:
+    """Upside down, the sense of the rotation vector is a matter of rounding: no configuration, but no error either."""
+    batch = head.solve_batch(np.array([[0.0, 0.0, 1.275], [np.pi, 0.3, 1.275], [1e6, 0.0, -1e6], [0.1, 0.0, 1.3]]))
+    assert batch.reachable.tolist() == [True, False, False, True]
+    assert np.isfinite(batch.q[[0, 3]]).all()
+
+
+def test_a_closed_form_that_fails_at_one_pose_marks_it(head: Kinematics, monkeypatch: pytest.MonkeyPatch) -> None:
+    exact = type(head.task).closed_form
+    off = np.array([[0.0], [1e-6]])
+    monkeypatch.setattr(type(head.task), "closed_form", lambda task, poses: exact(task, poses) + off[: len(poses)])
+    batch = head.solve_batch(np.array([[0.0, 0.0, 1.275], [0.1, 0.0, 1.3]]))
+    assert batch.reachable.tolist() == [True, False]
+    assert "closed form does not hold there: it leaves a gap of " in batch.reasons[1]
+    assert np.isnan(batch.q[1]).all()
+
+
 def test_beyond_a_joint_limit(head: Kinematics) -> None:
     pose = {"nutation": np.radians(70), "precession": 0.2, "z": 1.275}
     with pytest.raises(UnreachablePoseError) as caught:
@@ -84,8 +109,8 @@ def test_beyond_a_joint_limit(head: Kinematics) -> None:
     assert error.value == pytest.approx(1.022, abs=1e-3)
     assert error.limits == (0.5, 0.9)
     assert str(error) == (
-        "pose nutation=70.00 deg, precession=11.46 deg, z=1275.0 mm: joint slide_3 (limb 3) would stand at 1022.0 mm, "
-        "limits 500.0 .. 900.0 mm"
+        "pose nutation 70 deg, precession 11.459 deg, z 1275 mm: joint slide_3 (limb 3) would stand at 1021.994 mm, "
+        "limits 500 .. 900 mm"
     )
 
 

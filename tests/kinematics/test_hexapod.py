@@ -67,4 +67,4 @@ def test_a_strut_that_is_too_short(hexapod: Kinematics) -> None:
     batch = hexapod.solve_batch(np.array([[0.0, 0.0, 0.12, 0.0, 0.0, 0.0]]))
     assert not batch.reachable[0]
     assert "(limb " in batch.reasons[0]
-    assert "limits 80.0 .. 110.0 mm" in batch.reasons[0]
+    assert "limits 80 .. 110 mm" in batch.reasons[0]

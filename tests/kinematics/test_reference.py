@@ -38,7 +38,7 @@ def test_small_differences_are_corrected(tmp_path: Path) -> None:
 def test_joint_values_of_another_pose(tmp_path: Path) -> None:
     with pytest.raises(DescriptionError) as caught:
         gantry(tmp_path, joints={"x": 0.1, "y": 0.0, "z": 0.0})
-    assert "machine.yaml:10: task.reference.joints.x: found 100.0 mm for x, expected 0.0 mm" in str(caught.value)
+    assert "machine.yaml:10: task.reference.joints.x: found 100 mm for x, expected 0 mm" in str(caught.value)
 
 
 def test_joint_values_that_close_nothing(tmp_path: Path) -> None:
@@ -58,7 +58,30 @@ def test_joint_values_that_close_nothing(tmp_path: Path) -> None:
             closures=[("hand", "post", "point")],
         )
     assert "machine.yaml:8: task.reference: found joint values near which nothing closes" in str(caught.value)
-    assert "loop_2 open by 1" in str(caught.value)
+    assert "as stored: loop_2 open by 1, the pose missed by 0 m or rad" in str(caught.value)
+
+
+def test_a_pose_that_cannot_be_met_is_not_blamed_on_the_loops(tmp_path: Path) -> None:
+    robot = Robot("base")
+    robot.add("x", "prismatic", "base", "slide", axis=(1, 0, 0))
+    with pytest.raises(DescriptionError, match=r"task\.reference: .* \(as stored: the pose missed by 0\.3 m or rad\)"):
+        machine(tmp_path, robot, kind="xyz", frame="slide", pose={"x": 0.0, "y": 0.3, "z": 0.0}, joints={"x": 0.0})
+
+
+def test_a_tool_frame_that_no_joint_moves(tmp_path: Path) -> None:
+    robot = Robot("base")
+    robot.add("x", "prismatic", "base", "slide", axis=(1, 0, 0))
+    robot.add("post_mount", "fixed", "base", "post", (0, 0, 0.4))
+    with pytest.raises(DescriptionError, match=r"task\.frame: found 'post', which no joint moves relative to 'base'"):
+        machine(tmp_path, robot, kind="xyz", frame="post", pose={"x": 0.0, "y": 0.0, "z": 0.4}, joints={"x": 0.0})
+
+
+def test_a_urdf_that_pinocchio_refuses(tmp_path: Path) -> None:
+    gantry(tmp_path, joints={"x": 0.0, "y": 0.0, "z": 0.0})
+    description = load_description(tmp_path)
+    description.urdf_path.write_text("<robot name='mechanism'><link name=")
+    with pytest.raises(DescriptionError, match=r"mechanism\.urdf: Pinocchio cannot read it \(.+\); correct the URDF"):
+        Kinematics(description)
 
 
 def test_closed_form_for_another_geometry(tmp_path: Path, head: Kinematics) -> None:
@@ -78,6 +101,10 @@ def test_closed_form_for_another_geometry(tmp_path: Path, head: Kinematics) -> N
     [
         ({"x": 0.0, "y": 0.0}, "no value for z, expected x, y, z"),
         ({"x": 0.0, "y": float("nan"), "z": 0.0}, "found nan for y"),
+        ({"x": 0.0, "y": 1e308, "z": 0.0}, r"pose: found 1e\+308 for y, expected a number between -1,000,000 and"),
+        ({"x": "a", "y": 0.0, "z": 0.0}, "found 'a' for x, expected one number"),
+        ({"x": [1, 2], "y": 0.0, "z": 0.0}, r"found \[1, 2\] for x, expected one number"),
+        ({"x": True, "y": 0.0, "z": 0.0}, "found True for x"),
     ],
 )
 def test_poses_that_are_none(tmp_path: Path, pose: dict[str, float], words: str) -> None:
@@ -88,3 +115,5 @@ def test_poses_that_are_none(tmp_path: Path, pose: dict[str, float], words: str)
         kinematics.solve({"x": 0.0, "y": 0.0, "zz": 0.0})
     with pytest.raises(PrsError, match=r"shape \(3,\)"):
         kinematics.solve_batch(np.zeros(3))
+    with pytest.raises(PrsError, match="no array of numbers"):
+        kinematics.solve_batch([["a", "b", "c"]])

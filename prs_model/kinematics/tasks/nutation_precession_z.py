@@ -18,6 +18,7 @@ class NutationPrecessionZ(Task):
 
     Without torsion R = Rz(psi) Ry(theta) Rz(-psi) = exp(theta [-sin psi, cos psi, 0]). The x and y components of R's
     rotation vector are prescribed, which is regular at nutation zero; its z component is left to the machine.
+    Poses that differ by full turns of theta or psi are the same pose.
     """
 
     coordinates: ClassVar[Mapping[str, Dimension]] = {
@@ -27,9 +28,10 @@ class NutationPrecessionZ(Task):
     }
 
     def targets(self, poses: FloatArray) -> FloatArray:
-        """Rotation-vector components and height (theta_x, theta_y, z), (N, 3)."""
+        """Rotation-vector components and height (theta_x, theta_y, z), (N, 3), with theta between -pi and pi."""
         nutation, precession, z = poses.T
-        return np.column_stack([-nutation * np.sin(precession), nutation * np.cos(precession), z])
+        tilt = np.arctan2(np.sin(nutation), np.cos(nutation))
+        return np.column_stack([-tilt * np.sin(precession), tilt * np.cos(precession), z])
 
     def residual(self, R: FloatArray, p: FloatArray, targets: FloatArray) -> FloatArray:
         return np.column_stack([kernels.rotation_vector(R)[:, :2], p[:, 2]]) - targets
