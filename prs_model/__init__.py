@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from importlib import import_module
+from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 from .errors import (
@@ -10,27 +11,37 @@ from .errors import (
     MissingExtraError,
     PartFileError,
     PhysicsError,
+    PluginError,
     PrsError,
     UnknownNameError,
     UnreachablePoseError,
 )
 
 if TYPE_CHECKING:
+    from .description import MachineDescription
     from .finite_elements import FiniteElementModel
+    from .kinematics import Configuration, Kinematics
+    from .kinematics.tasks import Task
     from .machine import Machine, load_machine
     from .modes import Modes
     from .plugins import PartRequest, Reducer, list_machines, list_reducers
     from .reduction import SuperElement, TravellingElement, reduce
     from .synthesis import System
 
+    __version__: str
+
 _LAZY = {
+    "Configuration": "kinematics",
     "FiniteElementModel": "finite_elements",
+    "Kinematics": "kinematics",
     "Machine": "machine",
+    "MachineDescription": "description",
     "Modes": "modes",
     "PartRequest": "plugins",
     "Reducer": "plugins",
     "SuperElement": "reduction",
     "System": "synthesis",
+    "Task": "kinematics.tasks",
     "TravellingElement": "reduction",
     "list_machines": "plugins",
     "list_reducers": "plugins",
@@ -39,21 +50,27 @@ _LAZY = {
 }
 
 __all__ = [
+    "Configuration",
     "DescriptionError",
     "FiniteElementModel",
+    "Kinematics",
     "Machine",
+    "MachineDescription",
     "MissingExtraError",
     "Modes",
     "PartFileError",
     "PartRequest",
     "PhysicsError",
+    "PluginError",
     "PrsError",
     "Reducer",
     "SuperElement",
     "System",
+    "Task",
     "TravellingElement",
     "UnknownNameError",
     "UnreachablePoseError",
+    "__version__",
     "list_machines",
     "list_reducers",
     "load_machine",
@@ -62,6 +79,8 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
+    if name == "__version__":
+        return version("prs-model")
     if name in _LAZY:
         return getattr(import_module(f".{_LAZY[name]}", __name__), name)
     raise AttributeError(f"module '{__name__}' has no attribute '{name}'")

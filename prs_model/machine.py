@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from . import plugins
 from .description import MachineDescription, load_description, replaced
-from .errors import PrsError
+from .errors import PrsError, short
 
 if TYPE_CHECKING:
     from .joints import ElasticJoint
@@ -40,6 +40,11 @@ class Machine:
         """The pose of the stored reference configuration [m, rad]."""
         return self.description.reference_pose
 
+    @property
+    def workspace(self) -> Mapping[str, tuple[float, float]]:
+        """The stated bounds of each pose coordinate [m, rad]. Poses beyond them are solved where joints allow it."""
+        return self.description.workspace
+
     @cached_property
     def kinematics(self) -> Kinematics:
         """Closed loops of the machine, solved on Pinocchio's tree."""
@@ -65,14 +70,12 @@ class Machine:
 
         return elastic_joints(self.description)
 
-    def configuration(self, **pose: float) -> Configuration:
+    def configuration(self, /, **pose: float) -> Configuration:
         """The configuration at a pose [m, rad]; coordinates left out take their reference values.
 
-        Raises UnreachablePoseError naming the joint, and PrsError for a coordinate the task does not have.
+        Raises UnreachablePoseError naming the joint, and PrsError for a coordinate the task does not have or a value
+        that is no number.
         """
-        wrong = [name for name in pose if name not in self.pose_names]
-        if wrong:
-            raise plugins.unknown("pose coordinate", wrong[0], list(self.pose_names))
         return self.kinematics.solve({**self.reference_pose, **pose})
 
     def assemble(self, configuration: Configuration | None = None) -> System:
@@ -81,7 +84,7 @@ class Machine:
 
         return assemble(self.description, self.parts, self.joints, configuration or self.configuration())
 
-    def modes(self, count: int = 8, **pose: float) -> Modes:
+    def modes(self, count: int = 8, /, **pose: float) -> Modes:
         """The lowest natural modes at a pose."""
         return self.assemble(self.configuration(**pose)).modes(count)
 
@@ -102,8 +105,16 @@ def load_machine(name_or_path: str | Path) -> Machine:
     if str(name_or_path) in plugins.list_machines():
         return Machine(load_description(plugins.machine_folder(str(name_or_path))))
     path = Path(name_or_path)
-    if path.exists():
+    if _exists(path):
         return Machine(load_description(path))
     if len(path.parts) > 1 or path.suffix in {".yaml", ".yml"}:
-        raise PrsError(f"{path}: no such file or folder; expected a machine.yaml, its folder, or an installed machine")
+        expected = "a machine.yaml, its folder, or an installed machine"
+        raise PrsError(f"{short(path)}: no such file or folder; expected {expected}")
     raise plugins.unknown("machine", str(name_or_path), list(plugins.list_machines()))
+
+
+def _exists(path: Path) -> bool:
+    try:
+        return path.exists()
+    except OSError as error:  # no permission, or a name longer than a file system takes
+        raise PrsError(f"{short(path)}: cannot be read: {error.strerror}") from error
