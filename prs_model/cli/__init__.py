@@ -4,46 +4,51 @@ from __future__ import annotations
 
 import argparse
 import json
-import logging
 import os
 import sys
 from collections.abc import Sequence
+from contextlib import redirect_stdout
 from typing import Any
 
-from ..errors import PrsError
-from . import machines, modes, reducers, validate
+from .. import __version__
+from ..errors import PrsError, short
+from . import machines, modes, reducers, streams, validate
 
 _COMMANDS = (modes, validate, machines, reducers)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; the exit status is 0, 1 (the input is wrong: one clear message) or 2 (usage)."""
+    streams.make_usable()
     options = _parser().parse_args(arguments)
-    logging.basicConfig(stream=sys.stderr, level=logging.WARNING, format="%(message)s")
-    logging.getLogger("prs_model").setLevel(logging.WARNING if options.quiet else logging.INFO)
     try:
-        outcome: dict[str, Any] = options.run(options)
-        text = json.dumps(outcome, indent=2, allow_nan=False) if options.json else options.show(outcome)
-        print(text, flush=True)
+        with streams.messages(quiet=options.quiet):
+            _run(options)
     except PrsError as error:
-        print(f"prs-model: {error}", file=sys.stderr)
-        return 1
+        streams.complain(str(error))
     except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 1
+        pass
     except KeyboardInterrupt:
-        print("prs-model: interrupted", file=sys.stderr)
-        return 1
+        streams.complain("interrupted")
+    except OSError as error:
+        where = f"{short(error.filename)}: " if error.filename else ""
+        streams.complain(f"{where}{error.strerror or error}")
     except Exception as error:
         if os.environ.get("PRS_MODEL_DEBUG"):
             raise
-        print(
-            f"prs-model: internal error, please report it ({type(error).__name__}: {error}); "
-            "set PRS_MODEL_DEBUG=1 to see where",
-            file=sys.stderr,
-        )
-        return 1
-    return 0
+        what = f"{type(error).__name__}: {error}"
+        streams.complain(f"internal error, please report it ({what}); set PRS_MODEL_DEBUG=1 to see where")
+    else:
+        return 0
+    return 1
+
+
+def _run(options: argparse.Namespace) -> None:
+    stream = streams.results_alone() if options.json else streams.results()
+    with redirect_stdout(sys.stderr):
+        outcome: dict[str, Any] = options.run(options)
+    text = json.dumps(outcome, indent=2, allow_nan=False) if options.json else options.show(outcome)
+    streams.emit(text, stream)
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -51,6 +56,7 @@ def _parser() -> argparse.ArgumentParser:
         prog="prs-model",
         description="Structural dynamics of parallel kinematic machines: natural frequencies and modes, pose by pose.",
     )
+    parser.add_argument("--version", action="version", version=f"prs-model {__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     for command in _COMMANDS:
         sub = commands.add_parser(command.NAME, help=command.HELP, description=command.HELP)

@@ -3,11 +3,20 @@
 from __future__ import annotations
 
 import argparse
+import logging
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from ..machine import load_machine
-from .values import assignment, pose_from, settings_from
+from ..machine import Machine, load_machine
+from ..readable import pose_text, readable, readable_range
+from .values import assignment, dimension_of, pose_from, settings_from, unit_of
+
+if TYPE_CHECKING:
+    from ..kinematics import Configuration
+    from ..modes import Modes
+
+_log = logging.getLogger(__name__)
+_SLACK = 1e-9  # m, rad: rounding of a pose at the edge of the workspace
 
 NAME = "modes"
 HELP = "natural frequencies, mode characters and energies at one pose"
@@ -19,6 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--pose",
         nargs="+",
+        action="extend",
         type=assignment,
         default=[],
         metavar="NAME=VALUE",
@@ -47,51 +57,64 @@ def run(options: argparse.Namespace) -> dict[str, Any]:
 
         check_picture_file(options.picture)
     configuration = machine.configuration(**pose_from(options.pose, machine.kinematics.task.coordinates))
+    _warn_outside_workspace(machine, configuration)
     modes = machine.assemble(configuration).modes(options.count)
     if options.picture is not None:
         from ..modes.picture import draw_modes
 
         draw_modes(modes, options.picture, title=machine.description.file.title or machine.name)
-    kinetic, strain = modes.kinetic_energy(), modes.strain_energy()
     return {
         "machine": machine.name,
         "pose": {name: float(value) for name, value in configuration.pose.items()},
-        "pose_units": {
-            name: "rad" if dimension.angle else "m" for name, dimension in machine.kinematics.task.coordinates.items()
-        },
+        "pose_units": {name: unit_of(kind) for name, kind in machine.kinematics.task.coordinates.items()},
         "coordinates": modes.system.size,
+        "requested": options.count,
         "frequencies_hz": [float(f) for f in modes.frequencies],
-        "modes": [
-            {
-                "number": k + 1,
-                "frequency_hz": float(modes.frequencies[k]),
-                "character": str(character),
-                "kinetic_energy": {name: float(share[k]) for name, share in kinetic.items()},
-                "strain_energy": {name: float(share[k]) for name, share in strain.items()},
-            }
-            for k, character in enumerate(modes.characters())
-        ],
+        "modes": _table(modes),
         "picture": None if options.picture is None else str(options.picture),
     }
 
 
 def show(outcome: dict[str, Any]) -> str:
     """A table of modes under a line that says where."""
-    units = outcome["pose_units"]
-    pose = ", ".join(f"{name} {_readable(value, units[name])}" for name, value in outcome["pose"].items())
+    pose = pose_text(outcome["pose"], {name: dimension_of(unit) for name, unit in outcome["pose_units"].items()})
     lines = [
         f"{outcome['machine']} at {pose} ({outcome['coordinates']} coordinates)",
         "",
         "mode  frequency/Hz  character (share of kinetic energy)",
     ]
     lines += [f"{m['number']:>4}  {m['frequency_hz']:>12.3f}  {m['character']}" for m in outcome["modes"]]
+    if len(outcome["modes"]) < outcome["requested"]:
+        lines += [f"{'':>4}  {'':>12}  (all there are)"]
     if outcome["picture"]:
         lines += ["", f"mode shapes drawn in {outcome['picture']}"]
     return "\n".join(lines)
 
 
-def _readable(value: float, unit: str) -> str:
-    return f"{value * 57.29577951308232:.4g} deg" if unit == "rad" else f"{value * 1e3:.6g} mm"
+def _table(modes: Modes) -> list[dict[str, Any]]:
+    kinetic, strain = modes.kinetic_energy(), modes.strain_energy()
+    return [
+        {
+            "number": k + 1,
+            "frequency_hz": float(modes.frequencies[k]),
+            "character": str(character),
+            "group": character.group,
+            "motion": character.motion,
+            "shares": dict(character.shares),
+            "kinetic_energy": {name: float(share[k]) for name, share in kinetic.items()},
+            "strain_energy": {name: float(share[k]) for name, share in strain.items()},
+        }
+        for k, character in enumerate(modes.characters())
+    ]
+
+
+def _warn_outside_workspace(machine: Machine, configuration: Configuration) -> None:
+    for name, (low, high) in machine.workspace.items():
+        value = configuration.pose[name]
+        if not low - _SLACK <= value <= high + _SLACK:
+            kind = machine.kinematics.task.coordinates[name]
+            found, bounds = readable(value, kind), readable_range(low, high, kind)
+            _log.warning("pose is outside the stated workspace: %s %s, workspace %s", name, found, bounds)
 
 
 def _positive(text: str) -> int:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from ..plugins import list_reducers
+from ..errors import PluginError
+from ..plugins import REDUCERS, names, reducer
 from .table import table
 
 NAME = "reducers"
@@ -17,11 +18,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> dict[str, Any]:
-    """Name and description of each."""
-    return {"reducers": [{"name": name, "description": text} for name, text in list_reducers().items()]}
+    """Name and description of each, or what is wrong with it."""
+    return {"reducers": [_reducer(name) for name in names(REDUCERS)]}
 
 
 def show(outcome: dict[str, Any]) -> str:
     """A line each."""
-    rows = [(row["name"], row["description"]) for row in outcome["reducers"]]
+    rows = [(row["name"], row["problem"] or row["description"]) for row in outcome["reducers"]]
     return table(rows) if rows else "no reducer is installed"
+
+
+def _reducer(name: str) -> dict[str, Any]:
+    try:
+        return {"name": name, "description": reducer(name).description, "problem": None}
+    except PluginError as error:
+        return {"name": name, "description": "", "problem": str(error).splitlines()[0]}

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import argparse
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..description import json_schema
 from ..errors import PrsError
 from ..machine import Machine, load_machine
 
+if TYPE_CHECKING:
+    from ..modes import Modes
+
 NAME = "validate"
 HELP = "check a machine description, its URDF, its reference configuration and its parts"
+_MOVES = 0.01  # share of the kinetic energy
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -20,37 +24,63 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> dict[str, Any]:
-    """Load the description, solve the reference configuration, build every part and synthesise once."""
+    """Load the description, solve the reference configuration, build every part, synthesise and solve once."""
     if options.schema:
         options.json = True
         return json_schema()
     if options.machine is None:
         raise PrsError("name a machine to check, or ask for --schema")
-    machine = load_machine(options.machine)
-    machine.kinematics  # noqa: B018 - checks the reference configuration
-    return _card(machine)
+    return _card(load_machine(options.machine))
 
 
 def show(outcome: dict[str, Any]) -> str:
     """A few lines about a sound machine."""
-    lines = [f"{outcome['machine']}: valid", f"  {outcome['title']}" if outcome["title"] else ""]
-    lines += [
-        f"  {len(outcome['bodies'])} bodies, {len(outcome['joints'])} joints, {outcome['coordinates']} coordinates"
-    ]
-    lines += [f"  {name:<14} {mass}" for name, mass in outcome["bodies"].items()]
-    return "\n".join(line for line in lines if line)
+    counts = f"{len(outcome['bodies'])} bodies, {len(outcome['joints'])} joints, {outcome['coordinates']} coordinates"
+    lines = [f"{outcome['machine']}: valid"]
+    lines += [f"  {outcome['title']}"] if outcome["title"] else []
+    lines += [f"  {counts}, first frequency {outcome['first_frequency_hz']:.1f} Hz"]
+    lines += [f"  {name:<14} {_mass(body)}" for name, body in outcome["bodies"].items()]
+    lines += [f"  warning: {warning}" for warning in outcome["warnings"]]
+    return "\n".join(lines)
+
+
+def _mass(body: dict[str, Any]) -> str:
+    return "grounded" if body["grounded"] else f"{body['mass_kg']:.3f} kg"
 
 
 def _card(machine: Machine) -> dict[str, Any]:
     system = machine.assemble()
+    modes = system.modes(system.size)
     return {
         "machine": machine.name,
         "title": machine.description.file.title,
         "valid": True,
+        "warnings": [*_unheld(machine), *_free(modes)],
         "coordinates": system.size,
+        "first_frequency_hz": float(modes.frequencies[0]),
         "bodies": {
-            name: "grounded" if element.grounded else f"{element.mass_properties().mass:.3f} kg"
+            name: {
+                "mass_kg": None if element.grounded else float(element.mass_properties().mass),
+                "grounded": element.grounded,
+            }
             for name, element in system.elements.items()
         },
         "joints": list(machine.description.joints),
     }
+
+
+def _unheld(machine: Machine) -> list[str]:
+    held = {end.split(".")[0] for joint in machine.description.joints.values() for end in joint.between}
+    loose = [name for name, body in machine.description.bodies.items() if name not in held and not body.grounded]
+    return [f"body '{name}' is held by no joint" for name in loose]
+
+
+def _free(modes: Modes) -> list[str]:
+    count = int(modes.is_rigid.sum())
+    if count == 0:
+        return []
+    moving = [name for name, share in modes.kinetic_energy().items() if share[modes.is_rigid].sum() > _MOVES * count]
+    return [
+        f"{count} of the modes have no frequency, {', '.join(moving)} moving freely; "
+        "check for an axis without a drive, or a body that nothing holds"
+    ]

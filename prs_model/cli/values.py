@@ -6,16 +6,17 @@ import re
 from argparse import ArgumentTypeError
 from collections.abc import Mapping, Sequence
 from math import isfinite
+from typing import get_args
 
 from ..description import parse_value
-from ..description.units import Dimension, Units
+from ..description.units import SI, AngleUnit, Dimension, LengthUnit, Units
 from ..errors import PrsError
 
 _ASSIGNMENT = re.compile(r"(?P<name>[^=\s]+)=(?P<value>.*)", re.DOTALL)
 _NUMBER = re.compile(r"(?P<number>[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?)\s*(?P<unit>[A-Za-z]*)")
 
-_LENGTHS = {"m": "m", "cm": "cm", "mm": "mm", "um": "um", "in": "in", "ft": "ft"}
-_ANGLES = {"rad": "rad", "deg": "deg"}
+_LENGTH, _ANGLE = Dimension(length=1), Dimension(angle=1)
+_UNITS = {_LENGTH: ("length", get_args(LengthUnit)), _ANGLE: ("angle", get_args(AngleUnit))}
 
 
 def assignment(text: str) -> tuple[str, str]:
@@ -50,12 +51,20 @@ def _number(name: str, text: str, dimension: Dimension | None) -> float:
         raise PrsError(
             f"--pose {name}: found '{text}', expected a number with or without a unit, such as 10deg or 1275mm"
         )
-    unit = match["unit"]
+    number, unit = float(match["number"]), match["unit"]
     if not unit or dimension is None:
-        return float(match["number"])
-    if unit in _LENGTHS and dimension.length == 1:
-        return float(match["number"]) * dimension.factor(Units.model_validate({"length": unit}))
-    if unit in _ANGLES and dimension.angle == 1:
-        return float(match["number"]) * dimension.factor(Units.model_validate({"angle": unit}))
-    expected = _LENGTHS if dimension.length == 1 else _ANGLES
-    raise PrsError(f"--pose {name}: found unit '{unit}', expected one of {', '.join(expected)}")
+        return number
+    kind, known = _UNITS[dimension]
+    if unit not in known:
+        raise PrsError(f"--pose {name}: found unit '{unit}', expected one of {', '.join(known)}")
+    return number * dimension.factor(Units.model_validate({kind: unit}))
+
+
+def unit_of(dimension: Dimension) -> str:
+    """The SI unit of a pose coordinate."""
+    return dimension.label(SI)
+
+
+def dimension_of(unit: str) -> Dimension:
+    """The dimension of a pose coordinate from its SI unit."""
+    return _ANGLE if unit == unit_of(_ANGLE) else _LENGTH

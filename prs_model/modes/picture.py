@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
+from errno import EISDIR
 from math import ceil
 from pathlib import Path
 from types import SimpleNamespace
@@ -14,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..errors import MissingExtraError, PrsError
+from ..errors import MissingExtraError, PrsError, short
 
 if TYPE_CHECKING:
     from .modes import Modes
@@ -29,8 +31,10 @@ def check_picture_file(path: Path) -> None:
     """Raise PrsError now if a picture could not be written to `path` later."""
     if path.suffix.lower() not in _FORMATS:
         raise PrsError(f"{path}: found a name ending in '{path.suffix}', expected one of {', '.join(_FORMATS)}")
-    if path.is_dir() or not path.parent.is_dir() or not os.access(path.parent, os.W_OK):
-        raise PrsError(f"{path}: cannot be written; expected a file name in a folder that exists and is writable")
+    with _told(path):
+        if path.is_dir():
+            raise IsADirectoryError(EISDIR, "it is a folder")
+        _temporary(path).unlink()
     _matplotlib()
 
 
@@ -122,14 +126,31 @@ def _frame(axes: Any, low: FloatArray, high: FloatArray) -> None:
 
 
 def _write(figure: Any, path: Path) -> None:
+    with _told(path):
+        complete = _temporary(path)
+        try:
+            figure.savefig(complete, dpi=130)
+            complete.chmod(0o644)
+            complete.replace(path)
+        finally:
+            complete.unlink(missing_ok=True)
+
+
+def _temporary(path: Path) -> Path:
+    """A new empty file beside `path`."""
     handle, name = tempfile.mkstemp(dir=path.parent, suffix=path.suffix.lower())
     os.close(handle)
+    return Path(name)
+
+
+@contextmanager
+def _told(path: Path) -> Iterator[None]:
+    """Whatever keeps a file from being written becomes a PrsError."""
     try:
-        figure.savefig(name, dpi=130)
-        os.chmod(name, 0o644)
-        os.replace(name, path)
-    finally:
-        Path(name).unlink(missing_ok=True)
+        yield
+    except OSError as error:
+        expected = "expected a file name in a folder that exists and is writable"
+        raise PrsError(f"{short(path)}: cannot be written ({error.strerror or error}); {expected}") from error
 
 
 def _matplotlib() -> SimpleNamespace:
@@ -140,6 +161,8 @@ def _matplotlib() -> SimpleNamespace:
         from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
     except ImportError as error:
         raise MissingExtraError("matplotlib", "plot", "drawing mode shapes") from error
+    except ValueError as error:  # a setting of its own that it does not take, such as MPLBACKEND
+        raise PrsError(f"matplotlib cannot be used: {error}") from error
     return SimpleNamespace(
         Figure=Figure,
         Faces=Poly3DCollection,
