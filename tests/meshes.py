@@ -9,12 +9,12 @@ from pathlib import Path
 import meshio
 import numpy as np
 from numpy.typing import NDArray
-from prs_reducers.mesh_file import TetrahedralMesh
-from prs_reducers.solid import SolidOptions, solid_model
-from prs_reducers.tetrahedra import outer_faces
 
 from prs_model.description.schema import Section
 from prs_model.finite_elements import FiniteElementModel
+from prs_reducers.mesh_file import TetrahedralMesh
+from prs_reducers.solid import SolidOptions, solid_model
+from prs_reducers.tetrahedra import outer_faces
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]

@@ -8,15 +8,15 @@ from dataclasses import replace
 import meshio
 import numpy as np
 import pytest
-from prs_reducers.mesh_file import read_mesh
-from prs_reducers.solid import SolidOptions, solid_model
-from prs_reducers.tetrahedra import Material, assemble
 from scipy.sparse.linalg import eigsh
 
 import prs_model as prs
 from prs_model.finite_elements import FiniteElementModel
 from prs_model.reduction.coupling import Tie
 from prs_model.reduction.craig_bampton import craig_bampton
+from prs_reducers.mesh_file import read_mesh
+from prs_reducers.solid import SolidOptions, solid_model
+from prs_reducers.tetrahedra import Material, assemble
 from tests.meshes import STEEL, box, steel, write
 
 BEAM = (1.0, 0.05, 0.05)
