@@ -87,6 +87,9 @@ SHAPE = [
     yaml("unknown source", "source: measured", "source: guessed", "bodies.ram.options.mass", "'guessed'", "assumed"),
     yaml("number for text", "name: gantry", "name: 5", "name", "found 5, expected text", "quotes"),
     yaml("yes for true", "rigid: true", "rigid: yes", "joints.seat.rigid", "expected true or false"),
+    yaml("damping in percent", "modal: 0.02", "modal: 2.5", "damping.modal", "found 2.5", "below 1, such as 0.025"),
+    yaml("name of nothing", "name: gantry", "name: ''", "name", "found the name ''", "letters, digits"),
+    yaml("name that cannot be seen", "name: gantry", r'name: "gan\ntry\0"', "name", r"'gan\ntry\x00'"),
     yaml("unknown drive", "kind: ball_screw", "kind: ballscrew", "joints.X.drive", "did you mean 'ball_screw'"),
 ]  # fmt: skip
 
@@ -162,6 +165,17 @@ PARTS = [
          "bodies.bed.source", "reads no file"),
     yaml("source not there", BRIDGE, "    reducer: npz\n    source: bridge.npz\n", "bodies.bridge.source",
          "expected a file in", at="bridge.npz"),
+    yaml("option of a reducer without options", BRIDGE,
+         "    reducer: npz\n    source: machine.yaml\n    options: {mass: 80}\n", "bodies.bridge.options.mass",
+         "an unknown key, expected no entries", at="    options: {mass: 80}"),
+    yaml("inconsistent units", BRIDGE, "    reducer: npz\n    source: machine.yaml\n    units: mm\n",
+         "bodies.bridge.units", "length-force-mass-time", at="    units: mm"),
+    yaml("units of no file", "frame: bed\n    reducer", "frame: bed\n    units: mm\n    reducer", "bodies.bed.units",
+         "found units, expected none"),
+    yaml("modes of a rigid body", "frame: bed\n    reducer", "frame: bed\n    modes: 5\n    reducer",
+         "bodies.bed.modes", "found modes, expected none"),
+    yaml("tie of a rigid body", "frame: bed\n    reducer", "frame: bed\n    tie: joint\n    reducer",
+         "bodies.bed.tie", "found tie, expected none"),
     yaml("inertia of no body", "zz: 2.0e5", "zz: 9.0e5", "bodies.foot.options.inertia", "principal moments"),
     yaml("clamped but free", "  ram:\n    frame", "  ram:\n    clamped: [foot]\n    frame", "bodies.ram.clamped",
          "add 'grounded: true'"),
@@ -209,6 +223,10 @@ TREE = [
     urdf("negative mass", '<mass value="80"/>', '<mass value="-80"/>', "link 'bridge': mass", "above zero (kg)"),
     urdf("mass in words", '<mass value="80"/>', '<mass value="eighty"/>', "link 'bridge': mass", 'value="eighty"'),
     urdf("mass not a number", '<mass value="80"/>', '<mass value="nan"/>', "link 'bridge': mass", "finite"),
+    urdf("mass as Python writes it", '<mass value="80"/>', '<mass value="8_0"/>', "link 'bridge': mass", "finite"),
+    urdf("origin as Python writes it", 'xyz="0 0.5 0.7"', 'xyz="0 0.5 0_0.7"', "joint 'bridge_left': origin: xyz",
+         "three finite numbers"),
+    urdf("spaces around a name", 'name="y" type', 'name=" y" type', "joint ' y'", "remove them"),
     urdf("inertia of no body", FOOT_INERTIA, FOOT_INERTIA.replace('izz="0.2"', 'izz="0.9"'),
          "link 'foot_left': inertia", "sum of the other two"),
     urdf("inertia not positive", FOOT_INERTIA, FOOT_INERTIA.replace('ixy="0"', 'ixy="0.5"'),
@@ -297,6 +315,13 @@ def test_both_files_are_told_about_at_once(tmp_path: Path) -> None:
         (URDF, "link 'bridge': mass"),
         (URDF, "joint 'y': axis"),
     ]
+
+
+def test_a_folder_in_place_of_the_file_is_named(tmp_path: Path) -> None:
+    (tmp_path / YAML).mkdir()
+    for path in (tmp_path, tmp_path / YAML):
+        with pytest.raises(DescriptionError, match=r"machine\.yaml: is a folder, expected a file"):
+            load_description(path)
 
 
 def test_a_folder_without_a_machine_is_named(tmp_path: Path) -> None:

@@ -107,6 +107,25 @@ def test_a_ring_of_links_is_found(written: Callable[[str], Path]) -> None:
         read_urdf(written(f'<robot name="r">{links}{ring}</robot>'))
 
 
+@pytest.mark.parametrize("key", ["xyz", "upper"])
+@pytest.mark.parametrize("text", ["1", "+1", " 1", "1 ", "1.", ".5", "1E+0", "1_0", "0x1", "1d0", "1e", "&#9;1", "１"])
+def test_what_is_read_as_a_number_pinocchio_reads_too(written: Callable[[str], Path], key: str, text: str) -> None:
+    given = {"xyz": "0", "upper": "1"} | {key: text}
+    path = written(
+        f"""<robot name="r"><link name="a"/><link name="b"/><joint name="j" type="prismatic"><parent link="a"/>
+        <child link="b"/><origin xyz="0 0 {given["xyz"]}"/><axis xyz="0 0 1"/>
+        <limit lower="-1" upper="{given["upper"]}" effort="0" velocity="0"/></joint></robot>"""
+    )
+    try:
+        joint = read_urdf(path).joints["j"]
+    except DescriptionError:
+        assert text not in ("1", "+1", " 1", "1.", ".5", "1E+0")
+        return
+    model = pin.buildModelFromUrdf(str(path))
+    assert model.jointPlacements[1].translation[2] == joint.xyz[2]
+    assert model.upperPositionLimit[0] == joint.upper
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [

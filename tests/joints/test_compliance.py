@@ -104,8 +104,20 @@ def test_ball_screw_is_softest_between_its_bearings() -> None:
     assert ball_screw_compliance(screw, 0.5) == pytest.approx(expected, rel=1e-12)
     assert ball_screw_compliance(screw, 0.5) > ball_screw_compliance(screw, 0.1)
     assert ball_screw_compliance(screw, 0.3) == pytest.approx(ball_screw_compliance(screw, 0.7), rel=1e-12)
+    assert ball_screw_compliance(screw, -1e-15) == ball_screw_compliance(screw, 0.0)
     with pytest.raises(PrsError, match="from the front bearing"):
         ball_screw_compliance(screw, 1.2)
+
+
+def test_a_screw_with_a_floating_end_softens_towards_it() -> None:
+    """1/k = 1/k_nut + 1/k_front + q/EA; a rear bearing of almost no stiffness comes to the same."""
+    floating = dict(kind="ball_screw", nut=1e9, front_bearing=1.25e9, EA=3e8, length=1.0, origin=0.0)
+    screw = BallScrew.model_validate(floating)
+    loose = BallScrew.model_validate({**floating, "rear_bearing": 1e-3})
+    for stroke in (0.0, 0.4, 1.0):
+        expected = 1 / 1e9 + 1 / 1.25e9 + stroke / 3e8
+        assert ball_screw_compliance(screw, stroke) == pytest.approx(expected, rel=1e-12)
+        assert ball_screw_compliance(loose, stroke) == pytest.approx(expected, rel=1e-9)
 
 
 def test_a_floating_bearing_transmits_nothing_along_its_zero() -> None:
