@@ -20,11 +20,15 @@ _MOVING_SHARE = 0.25
 
 @dataclass(frozen=True)
 class Character:
-    """The group of like bodies with most kinetic energy, how it moves, and the kinetic share of each group."""
+    """The group of like bodies with most kinetic energy, how it moves, and the kinetic share of each group.
+
+    `output` is the motion of the end-reference point: along or about which axes u, v, w of the output frame.
+    """
 
     group: str
     motion: str
     shares: Mapping[str, float]
+    output: str
 
     def __str__(self) -> str:
         others = [f"{name} {share:.0%}" for name, share in self.shares.items() if name != self.group]
@@ -37,7 +41,8 @@ def characters(system: System, shapes: FloatArray) -> tuple[Character, ...]:
     for body in system.elements:
         groups.setdefault(system.stems.get(body, body), []).append(body)
     motions = {body: _body_motion(system, body, shapes) for body in system.elements}
-    return tuple(_character(groups, motions, k) for k in range(shapes.shape[1]))
+    output = _output_motion(system, shapes)
+    return tuple(_character(groups, motions, output, k) for k in range(shapes.shape[1]))
 
 
 @dataclass(frozen=True)
@@ -51,6 +56,16 @@ class _BodyMotion:
 
     def is_rigid(self, mode: int) -> bool:
         return float((self.own[:, mode] ** 2).sum()) >= _RIGID_SHARE * float(self.energy[mode])
+
+
+def _output_motion(system: System, shapes: FloatArray) -> FloatArray:
+    """(6, k): motion of the end-reference point, rotations times the gyration radius of the body it belongs to."""
+    element = system.elements[system.output_body]
+    if element.grounded:
+        return system.output @ shapes
+    mass = element.mass_properties()
+    radius = np.sqrt(np.trace(mass.inertia) / 2.0 / mass.mass)
+    return np.asarray(np.array([1.0, 1.0, 1.0, radius, radius, radius])[:, None] * (system.output @ shapes))
 
 
 def _body_motion(system: System, body: str, shapes: FloatArray) -> _BodyMotion:
@@ -74,20 +89,29 @@ def _by_axis(twist: FloatArray, inertia: FloatArray, turn: FloatArray) -> FloatA
     return np.asarray(np.sqrt(np.maximum(diagonal, 0.0))[:, None] * (axes @ twist))
 
 
-def _character(groups: Mapping[str, Sequence[str]], motions: Mapping[str, _BodyMotion], mode: int) -> Character:
+def _character(
+    groups: Mapping[str, Sequence[str]], motions: Mapping[str, _BodyMotion], output: FloatArray, mode: int
+) -> Character:
     energy = {group: float(sum(motions[body].energy[mode] for body in bodies)) for group, bodies in groups.items()}
     total = sum(energy.values())
     ranked = sorted(energy, key=lambda group: -energy[group])
-    shares = {group: energy[group] / total for group in ranked if energy[group] > _NAMED_SHARE * total}
+    named = [group for group in ranked if group == ranked[0] or energy[group] > _NAMED_SHARE * total]
     bodies = groups[ranked[0]]
     words = _alone(motions[bodies[0]], mode) if len(bodies) == 1 else _together(bodies, ranked[0], motions, mode)
-    return Character(ranked[0], words, shares)
+    return Character(ranked[0], words, {group: energy[group] / total for group in named}, _axes(output[:, mode]))
 
 
 def _alone(motion: _BodyMotion, mode: int) -> str:
     if not motion.is_rigid(mode):
         return "deforming"
-    return _OUTPUT_AXES[int(np.argmax(np.abs(motion.output[:, mode])))]
+    return _axes(motion.output[:, mode])
+
+
+def _axes(motion: FloatArray) -> str:
+    """The leading axis of a motion (6,), and the second where it has a share worth naming."""
+    first, second = np.argsort(-(motion**2))[:2]
+    both = motion[second] ** 2 > _MOVING_SHARE * motion[first] ** 2
+    return _OUTPUT_AXES[first] + (f", {_OUTPUT_AXES[second]}" if both else "")
 
 
 def _together(bodies: Sequence[str], stem: str, motions: Mapping[str, _BodyMotion], mode: int) -> str:

@@ -51,6 +51,7 @@ def assemble(
         elements=elements,
         springs=motions,
         output=reading @ expansion[rows],
+        output_body=output.node.split(".", 1)[0],
         output_rotation=configuration.placement(output.frame).rotation,
         placements=placements,
         configuration=configuration,

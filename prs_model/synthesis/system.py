@@ -43,8 +43,9 @@ class System:
     """M u'' + C u' + K u = f in one configuration (eq. 16, 17), SI units, displacements in body axes.
 
     `expansion` (N, n) gives all N body coordinates from the n independent ones; it is the identity where no joint
-    is rigid. `blocks` are the rows of each body among the N. `output` (6, n) reads the end-reference point in the
-    axes of the output frame, whose rotation in the world is `output_rotation`; `placements` are those of the bodies.
+    is rigid. `blocks` are the rows of each body among the N. `output` (6, n) reads the end-reference point, a node of
+    `output_body`, in the axes of the output frame, whose rotation in the world is `output_rotation`; `placements`
+    are those of the bodies.
     """
 
     mass: FloatArray
@@ -55,6 +56,7 @@ class System:
     elements: Mapping[str, SuperElement]
     springs: tuple[SpringMotion, ...]
     output: FloatArray
+    output_body: str
     output_rotation: FloatArray
     placements: Mapping[str, pin.SE3]
     configuration: Configuration
