@@ -14,7 +14,7 @@ from .units import SI, Dimension, Units
 
 LARGEST = 1e100  # beyond any machine; products of such numbers stay finite
 
-Source = Literal["measured", "catalogue", "paper", "assumed", "computed"]
+Source = Literal["measured", "catalogue", "paper", "assumed", "computed", "fitted"]
 
 
 class Quantity(float):
