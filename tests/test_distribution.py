@@ -1,6 +1,7 @@
 """What a user installs: a wheel made from the sdist, alone in an environment, and third-party plug-ins beside it."""
 
 import json
+import os
 import shutil
 import subprocess
 import sys
@@ -17,7 +18,10 @@ pytest.importorskip("hatchling", reason="the build backend")
 
 
 def run(*command: str | Path, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
-    return subprocess.run([str(word) for word in command], cwd=cwd, capture_output=True, text=True, check=False)
+    """Run a command that sees nothing of the checkout: what PYTHONPATH adds would hide what is not installed."""
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    words = [str(word) for word in command]
+    return subprocess.run(words, cwd=cwd, capture_output=True, text=True, check=False, env=environment)
 
 
 def build(project: Path, out: Path) -> Path:
@@ -86,10 +90,10 @@ def test_a_third_party_adds_a_reducer_and_a_machine(environment: Path, tmp_path:
     assert done.returncode == 0, done.stderr
 
     reducers = json.loads(run(environment / "prs-model", "reducers", "--json", cwd=tmp_path).stdout)["reducers"]
-    assert {"name": "brick", "description": "a rigid brick"} in reducers
+    assert {"name": "brick", "description": "a rigid brick", "problem": None} in reducers
     modes = run(environment / "prs-model", "modes", "gantry", "--json", cwd=tmp_path)
     assert modes.returncode == 0, modes.stderr
-    plain = run(sys.executable, "-m", "prs_model", "modes", GANTRY, "--json")
+    plain = run(environment / "prs-model", "modes", GANTRY, "--json", cwd=tmp_path)
     assert json.loads(modes.stdout)["frequencies_hz"] == pytest.approx(json.loads(plain.stdout)["frequencies_hz"])
 
     unknown = run(environment / "prs-model", "modes", "gantri", cwd=tmp_path)
