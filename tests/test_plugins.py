@@ -113,3 +113,16 @@ def test_one_name_from_two_distributions(install: Install, caplog: pytest.LogCap
         "reducer 'solid' is installed twice: elsewhere:Angry of other is used, "
         "prs_reducers.solid:SolidReducer of prs-model is not"
     ]
+
+
+def test_a_description_that_names_a_broken_plugin_says_where(install: Install) -> None:
+    install("broken", {"reducers": {"angry": "elsewhere:Angry"}, "tasks": {"juggle": "elsewhere:number"}})
+    changes = {"bodies.platform.reducer": "angry", "task.kind": "juggle"}
+    hexapod = prs.load_machine("hexapod")
+    with pytest.raises(prs.DescriptionError) as caught:
+        hexapod.replace(changes)
+    messages = {problem.entry: problem.message for problem in caught.value.problems}
+    assert messages["bodies.platform.reducer"] == (
+        "reducer 'angry' (installed as elsewhere:Angry) cannot be used: OSError: no licence"
+    )
+    assert messages["task.kind"].startswith("task 'juggle' (installed as elsewhere:number) cannot be used: found 3")

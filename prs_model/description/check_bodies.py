@@ -7,7 +7,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from .. import plugins
-from ..errors import UnknownNameError
+from ..errors import PluginError, UnknownNameError
 from .messages import report
 from .problems import Place, not_known
 from .schema import Body, Box, Cylinder, Interface, Section, Selection
@@ -46,9 +46,10 @@ def _check_reducer(subject: Subject, place: Place, body: Body) -> None:
     try:
         plugin = plugins.reducer(body.reducer)
     except UnknownNameError as error:
-        known = body.reducer in error.known
-        message = str(error) if known else not_known("a reducer", body.reducer, error.known)
-        subject.problems.add((*place, "reducer"), message)
+        subject.problems.add((*place, "reducer"), not_known("a reducer", body.reducer, error.known))
+        return
+    except PluginError as error:
+        subject.problems.add((*place, "reducer"), str(error))
         return
     _check_source(subject, place, body, plugin.needs_source)
     if plugin.needs_source:

@@ -9,7 +9,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from .. import plugins
-from ..errors import UnknownNameError
+from ..errors import PluginError, UnknownNameError
 from .expand import substituted
 from .messages import report
 from .problems import Place, listed, not_known
@@ -67,9 +67,10 @@ def _plugin(subject: Subject) -> Any:
     try:
         return plugins.task(kind)
     except UnknownNameError as error:
-        message = str(error) if kind in error.known else not_known("a task", kind, error.known)
-        subject.problems.add(("task", "kind"), message)
-        return None
+        subject.problems.add(("task", "kind"), not_known("a task", kind, error.known))
+    except PluginError as error:
+        subject.problems.add(("task", "kind"), str(error))
+    return None
 
 
 def _check_options(subject: Subject, plugin: Any) -> None:
