@@ -90,8 +90,10 @@ def _too_far(reach: Reach, stored: FloatArray, q: FloatArray) -> _Problem | None
         return None
     found, needed = reach.joint_text(j, stored[j]), reach.joint_text(j, q[j])
     name = reach.tree.names[j]
-    message = f"found {found} for {name}, expected {needed} in the reference pose; correct the joint values, the pose or the task's frames"
-    return (*_HERE, "joints", name), message
+    return (*_HERE, "joints", name), (
+        f"found {found} for {name}, expected {needed} in the reference pose; correct the joint values, the pose or "
+        "the task's frames"
+    )
 
 
 def _beyond_limits(reach: Reach, pose: FloatArray, q: FloatArray) -> _Problem | None:
