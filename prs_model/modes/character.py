@@ -79,7 +79,7 @@ def _body_motion(system: System, body: str, shapes: FloatArray) -> _BodyMotion:
     rigid = element.rigid_body_modes() @ np.asarray(centre.toActionMatrix())
     inertia = rigid.T @ element.mass @ rigid
     twist = np.linalg.lstsq(inertia, rigid.T @ momentum, rcond=1e-12)[0]
-    turn = system.output_rotation.T @ system.placements[body].rotation
+    turn = system.output_placement.rotation.T @ system.placements[body].rotation
     return _BodyMotion(energy, _by_axis(twist, inertia, turn), _by_axis(twist, inertia, np.eye(3)))
 
 

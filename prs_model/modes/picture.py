@@ -14,6 +14,7 @@ from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import pinocchio as pin
 
 from ..arrays import FloatArray, IntArray
 from ..errors import MissingExtraError, PrsError, short
@@ -23,8 +24,9 @@ if TYPE_CHECKING:
 
 
 _FORMATS = (".png", ".svg", ".pdf")
-_AMPLITUDE = 0.06  # largest displacement drawn, as a share of the machine's size
-_GROUNDED_OPACITY = 0.15  # a frame around the machine must not hide it
+_AMPLITUDE = 0.08  # largest displacement drawn, as a share of the machine's size
+_GROUNDED_OPACITY = 0.12  # a frame around the machine must not hide it
+_STILL_OPACITY = 0.25
 
 
 def check_picture_file(path: Path) -> None:
@@ -52,12 +54,15 @@ def draw_modes(modes: Modes, path: Path, title: str = "") -> None:
     low, high = points.min(axis=0), points.max(axis=0)
     count = modes.shapes.shape[1]
     columns = min(count, 4)
-    figure = plt.Figure(figsize=(3.6 * columns, 4.4 * ceil(count / columns)), layout="constrained")
+    figure = plt.Figure(figsize=(3.4 * columns, 3.9 * ceil(count / columns) + 0.9), layout="constrained")
     for k, character in enumerate(modes.characters()):
         axes = figure.add_subplot(ceil(count / columns), columns, k + 1, projection="3d")
         _draw_mode(plt, axes, bodies, k, _AMPLITUDE * float(np.max(high - low)))
-        _frame(axes, low, high)
-        axes.set_title(f"mode {k + 1}: {modes.frequencies[k]:.1f} Hz\n{character.group} {character.motion}", fontsize=9)
+        _draw_axes(axes, modes.system.output_placement, 0.12 * float(np.max(high - low)))
+        _draw_scale(axes, low, high)
+        _set_view(axes, low, high)
+        words = f"{character.group} {character.motion}; tool {character.output}"
+        axes.set_title(f"mode {k + 1}: {modes.frequencies[k]:.1f} Hz\n{words}", fontsize=9)
     bar = figure.colorbar(plt.scale, ax=figure.axes, orientation="horizontal", shrink=0.3, aspect=40, pad=0.01)
     bar.set_label("displacement / largest displacement of the mode", fontsize=8)
     figure.suptitle(title)
@@ -71,26 +76,33 @@ class _BodyPicture:
     points: FloatArray
     cells: IntArray
     displacements: FloatArray
-    opacity: float
+    is_grounded: bool
+
+    def amplitude(self, mode: int) -> float:
+        return float(np.linalg.norm(self.displacements[mode], axis=1).max())
+
+    def opacities(self, share: float) -> FloatArray:
+        """(t,) of a body that moves by `share` of the mode's largest displacement: what stands still hides nothing."""
+        moving = _STILL_OPACITY + (1.0 - _STILL_OPACITY) * min(1.0, 3.0 * share)
+        return np.full(len(self.cells), _GROUNDED_OPACITY if self.is_grounded else moving)
 
 
 def _draw_mode(plt: SimpleNamespace, axes: Any, bodies: Sequence[_BodyPicture], mode: int, amplitude: float) -> None:
     """All bodies at rest, faint, and where the mode takes them; faces in one collection, so that depth is right."""
-    largest = max(float(np.linalg.norm(body.displacements[mode], axis=1).max()) for body in bodies) or 1.0
+    largest = max(body.amplitude(mode) for body in bodies) or 1.0
     for corners in (2, 3):
         drawn = [body for body in bodies if body.cells.shape[1] == corners]
         if not drawn:
             continue
         rest = np.concatenate([body.points[body.cells] for body in drawn])
         moved = np.concatenate([body.displacements[mode][body.cells] for body in drawn]) / largest
-        colours = plt.colours(np.linalg.norm(moved, axis=2).mean(axis=1))
-        colours[:, 3] = np.concatenate([np.full(len(body.cells), body.opacity) for body in drawn])
+        colours = plt.colours(np.linalg.norm(moved, axis=2).max(axis=1))
         if corners == 2:
-            axes.add_collection3d(plt.Lines(rest, colors=(0.5, 0.5, 0.5, 0.4), linewidths=0.6))
-            axes.add_collection3d(plt.Lines(rest + amplitude * moved, colors=colours, linewidths=2.0))
+            axes.add_collection3d(plt.Lines(rest, colors=(0.5, 0.5, 0.5, 0.5), linewidths=0.8))
+            axes.add_collection3d(plt.Lines(rest + amplitude * moved, colors=colours, linewidths=2.5))
         else:
-            outline = plt.Faces(rest, facecolors=(0.0, 0.0, 0.0, 0.0), edgecolors=(0.5, 0.5, 0.5, 0.1), linewidths=0.2)
-            axes.add_collection3d(outline)
+            colours[:, 3] = np.concatenate([body.opacities(body.amplitude(mode) / largest) for body in drawn])
+            axes.add_collection3d(plt.Faces(rest, facecolors=(0.5, 0.5, 0.5, 0.06), linewidths=0.0))
             axes.add_collection3d(plt.Faces(rest + amplitude * moved, facecolors=colours, linewidths=0.0, shade=True))
 
 
@@ -103,8 +115,8 @@ def _body_picture(modes: Modes, name: str) -> _BodyPicture:
         points, cells, recovery = _star(element.positions, element.motions[:, :3])
     displacements = np.einsum("pin,nk->kpi", recovery, modes.body_shapes(name))
     rotation = placement.rotation
-    opacity = _GROUNDED_OPACITY if element.grounded else 1.0
-    return _BodyPicture(points @ rotation.T + placement.translation, cells, displacements @ rotation.T, opacity)
+    world = points @ rotation.T + placement.translation
+    return _BodyPicture(world, cells, displacements @ rotation.T, element.grounded)
 
 
 def _star(nodes: FloatArray, motions: FloatArray) -> tuple[FloatArray, IntArray, FloatArray]:
@@ -115,14 +127,28 @@ def _star(nodes: FloatArray, motions: FloatArray) -> tuple[FloatArray, IntArray,
     return points, np.column_stack([ring, np.full(len(ring), len(ring))]), recovery
 
 
-def _frame(axes: Any, low: FloatArray, high: FloatArray) -> None:
-    margin = 0.03 * float(np.max(high - low))
-    for axis, a, b in zip("xyz", low - margin, high + margin, strict=True):
-        getattr(axes, f"set_{axis}lim")(a, b)
-        getattr(axes, f"set_{axis}label")(f"{axis} / m", fontsize=7)
-    axes.tick_params(labelsize=6)
-    axes.set_box_aspect(high - low + 2 * margin, zoom=0.88)
-    axes.view_init(elev=18, azim=-60)
+def _draw_axes(axes: Any, place: pin.SE3, length: float) -> None:
+    """The output frame's u, v, w at the end-reference point."""
+    for name, direction in zip("uvw", place.rotation.T, strict=True):
+        tip = place.translation + length * direction
+        axes.plot(*np.column_stack([place.translation, tip]), color="black", linewidth=0.8)
+        axes.text(*(place.translation + 1.25 * length * direction), name, fontsize=8, ha="center", va="center")
+
+
+def _draw_scale(axes: Any, low: FloatArray, high: FloatArray) -> None:
+    """A bar of a round length along z, beside the machine."""
+    length = 10.0 ** np.floor(np.log10(np.max(high - low) / 2.0))
+    axes.plot([low[0]] * 2, [low[1]] * 2, [low[2], low[2] + length], color="black", linewidth=1.5)
+    axes.text(low[0], low[1], low[2] + length / 2.0, f" {1e3 * length:g} mm", fontsize=7, va="center")
+
+
+def _set_view(axes: Any, low: FloatArray, high: FloatArray) -> None:
+    size = np.maximum(high - low, 0.05 * np.max(high - low))
+    for axis, middle, half in zip("xyz", (low + high) / 2.0, size / 2.0, strict=True):
+        getattr(axes, f"set_{axis}lim")(middle - half, middle + half)
+    axes.set_axis_off()
+    axes.set_box_aspect(size, zoom=1.12)
+    axes.view_init(elev=20, azim=-35)
 
 
 def _write(figure: Any, path: Path) -> None:

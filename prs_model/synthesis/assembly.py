@@ -40,7 +40,7 @@ def assemble(
     motions, constraints, sizes = _joined(springs, ends, stiffness)
     mass, stiffness, expansion, kept = _independent(mass, stiffness, constraints, sizes)
     output = description.file.output
-    rows, reading = ends.output(output, configuration.placement(output.frame))
+    place, rows, reading = ends.output(output, configuration.placement(output.frame))
     labels = _labels(elements)
     return System(
         mass=mass,
@@ -52,7 +52,7 @@ def assemble(
         springs=motions,
         output=reading @ expansion[rows],
         output_body=output.node.split(".", 1)[0],
-        output_rotation=configuration.placement(output.frame).rotation,
+        output_placement=place,
         placements=placements,
         configuration=configuration,
         stems=description.stems,

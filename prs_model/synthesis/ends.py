@@ -45,12 +45,13 @@ class Ends:
         np.add.at(size, place, np.abs(np.hstack([each for _, _, each in motions])).T)
         return RelativeDisplacement(rows, motion.T, size.T)
 
-    def output(self, output: Output, frame: pin.SE3) -> tuple[IntArray, FloatArray]:
-        """Rows (k,) and (6, k): the motion of the end-reference point in the axes of the output frame."""
+    def output(self, output: Output, frame: pin.SE3) -> tuple[pin.SE3, IntArray, FloatArray]:
+        """Where the end-reference point stands, with the axes of the output frame; rows (k,) and its motion (6, k)."""
         body, node = output.node.split(".", 1)
         element = self.elements[body]
         position = self.placements[body].act(element.positions[element.node(node)])
-        return self._motion(output.node, None, pin.SE3(frame.rotation, position))
+        place = pin.SE3(frame.rotation, position)
+        return place, *self._motion(output.node, None, place)
 
     def _motion(self, end: str, interface: str | None, place: pin.SE3) -> tuple[IntArray, FloatArray]:
         body, node = end.split(".", 1)

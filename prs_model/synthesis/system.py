@@ -44,8 +44,8 @@ class System:
 
     `expansion` (N, n) gives all N body coordinates from the n independent ones; it is the identity where no joint
     is rigid. `blocks` are the rows of each body among the N. `output` (6, n) reads the end-reference point, a node of
-    `output_body`, in the axes of the output frame, whose rotation in the world is `output_rotation`; `placements`
-    are those of the bodies.
+    `output_body`, in the axes of the output frame; `output_placement` is where it stands in the world, `placements`
+    where the bodies do.
     """
 
     mass: FloatArray
@@ -57,7 +57,7 @@ class System:
     springs: tuple[SpringMotion, ...]
     output: FloatArray
     output_body: str
-    output_rotation: FloatArray
+    output_placement: pin.SE3
     placements: Mapping[str, pin.SE3]
     configuration: Configuration
     stems: Mapping[str, str]
