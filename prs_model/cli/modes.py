@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..machine import Machine, load_machine
 from ..readable import pose_text, readable, readable_range
+from .table import table
 from .values import assignment, dimension_of, pose_from, settings_from, unit_of
 
 if TYPE_CHECKING:
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from ..modes import Modes
 
 _log = logging.getLogger(__name__)
+_NAMED_SHARE = 0.1
 _SLACK = 1e-9  # m, rad: rounding of a pose at the edge of the workspace
 
 NAME = "modes"
@@ -62,7 +64,9 @@ def run(options: argparse.Namespace) -> dict[str, Any]:
     if options.picture is not None:
         from ..modes.picture import draw_modes
 
-        draw_modes(modes, options.picture, title=machine.description.file.title or machine.name)
+        place = pose_text(configuration.pose, machine.kinematics.task.coordinates)
+        title = f"{machine.description.file.title or machine.name}\n{place}"
+        draw_modes(modes, options.picture, title)
     return {
         "machine": machine.name,
         "pose": {name: float(value) for name, value in configuration.pose.items()},
@@ -78,17 +82,19 @@ def run(options: argparse.Namespace) -> dict[str, Any]:
 def show(outcome: dict[str, Any]) -> str:
     """A table of modes under a line that says where."""
     pose = pose_text(outcome["pose"], {name: dimension_of(unit) for name, unit in outcome["pose_units"].items()})
-    lines = [
-        f"{outcome['machine']} at {pose} ({outcome['coordinates']} coordinates)",
-        "",
-        "mode  frequency/Hz  character (share of kinetic energy)",
-    ]
-    lines += [f"{m['number']:>4}  {m['frequency_hz']:>12.3f}  {m['character']}" for m in outcome["modes"]]
+    rows = [("mode", "frequency/Hz", "what moves (share of kinetic energy)", "tool point", "strain energy")]
+    rows += [_row(mode) for mode in outcome["modes"]]
+    lines = [f"{outcome['machine']} at {pose} ({outcome['coordinates']} coordinates)", "", table(rows)]
     if len(outcome["modes"]) < outcome["requested"]:
-        lines += [f"{'':>4}  {'':>12}  (all there are)"]
+        lines += ["(all there are)"]
     if outcome["picture"]:
         lines += ["", f"mode shapes drawn in {outcome['picture']}"]
     return "\n".join(lines)
+
+
+def _row(mode: dict[str, Any]) -> tuple[str, str, str, str, str]:
+    strain = ", ".join(f"{name} {share:.0%}" for name, share in mode["strain_shares"].items())
+    return f"{mode['number']:>4}", f"{mode['frequency_hz']:>12.3f}", mode["character"], mode["output"], strain
 
 
 def _table(modes: Modes) -> list[dict[str, Any]]:
@@ -101,11 +107,22 @@ def _table(modes: Modes) -> list[dict[str, Any]]:
             "group": character.group,
             "motion": character.motion,
             "shares": dict(character.shares),
+            "output": character.output,
+            "strain_shares": _by_group({name: float(share[k]) for name, share in strain.items()}, modes),
             "kinetic_energy": {name: float(share[k]) for name, share in kinetic.items()},
             "strain_energy": {name: float(share[k]) for name, share in strain.items()},
         }
         for k, character in enumerate(modes.characters())
     ]
+
+
+def _by_group(shares: dict[str, float], modes: Modes) -> dict[str, float]:
+    """Shares of 10 % and more of like bodies and joints together, the largest first."""
+    groups: dict[str, float] = {}
+    for name, share in shares.items():
+        stem = modes.system.stems.get(name, name)
+        groups[stem] = groups.get(stem, 0.0) + share
+    return {name: share for name, share in sorted(groups.items(), key=lambda item: -item[1]) if share >= _NAMED_SHARE}
 
 
 def _warn_outside_workspace(machine: Machine, configuration: Configuration) -> None:

@@ -15,13 +15,15 @@ from .problems import Place, did_you_mean, dotted, listed
 from .schema import MachineFile
 
 _STEP = re.compile(r"([^.\[\]]+)|\[([0-9]+)\]")
+_PLACEHOLDER = re.compile(r"_?<[^<>]*>")
 _PATH = re.compile(r"[^.\[\]]+(\.[^.\[\]]+|\[[0-9]+\])*")
 
 
 def replaced(description: MachineDescription, changes: Mapping[str, object]) -> MachineDescription:
     """A new description with entries changed, such as ``{"joints.R.interfaces[0].stiffness.ux": 1e6}``.
 
-    Paths are those of machine.yaml as written. The name of an instance (``bodies.rod_2.modes``) splits its entry
+    Paths are those of machine.yaml as written; an entry of a list goes by its number or its name (``interfaces.left``,
+    ``stages.s3``). The name of an instance (``bodies.rod_2.modes``) splits its entry
     into instances of their own first. Values are in the units of the file and are validated together with the rest.
     Raises DescriptionError for a path that does not exist, with the nearest one that does, and as loading does.
     """
@@ -60,9 +62,27 @@ class _Draft:
             raise self._refuse(path, "found a path that cannot be read, expected one such as bodies.rod.modes")
         if len(place) > 1:
             self._split(str(place[0]), str(place[1]))
+        place = self._numbered(place)
         self.raw = self._changed(self.raw, place, (), value)
         self.lines = {at: line for at, line in self.lines.items() if at[: len(place)] != place}
         self.lines[place] = None
+
+    def _numbered(self, place: Place) -> Place:
+        """The place with entries of lists, where they go by their name or URDF joint, by their number."""
+        raw: Any = self.raw
+        steps: list[str | int] = []
+        for step in place:
+            if isinstance(raw, tuple) and isinstance(step, str):
+                names = [_name_of(each) for each in raw]
+                if step not in names:
+                    known = listed([name for name in names if name], 30)
+                    message = f"found '{step}' in a list, expected one of {known}, or a number such as [0]"
+                    raise self._refuse(dotted(place), message)
+                step = names.index(step)
+            steps.append(step)
+            inside = isinstance(raw, Mapping) or (isinstance(raw, tuple) and isinstance(step, int) and step < len(raw))
+            raw = (raw.get(step) if isinstance(raw, Mapping) else raw[step]) if inside else None
+        return tuple(steps)
 
     def _changed(self, raw: Any, place: Place, done: Place, value: Any) -> Any:
         """A copy of `raw`, which stands at `done`, with the entry at `place` replaced."""
@@ -128,6 +148,14 @@ def _in_place_of(entries: Mapping[str, Any], name: str, others: Mapping[str, Any
     for key, value in entries.items():
         exchanged.update(others if key == name else {key: value})
     return exchanged
+
+
+def _name_of(entry: Any) -> str | None:
+    """What an entry of a list goes by: its name, or its URDF joint without the placeholder."""
+    if not isinstance(entry, Mapping):
+        return None
+    name = entry.get("name", entry.get("urdf"))
+    return _PLACEHOLDER.sub("", name) if isinstance(name, str) else None
 
 
 def _plain(value: Any) -> Any:

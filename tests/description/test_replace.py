@@ -93,3 +93,15 @@ def test_a_changed_entry_is_not_said_to_stand_in_the_file(machine: MachineDescri
     with pytest.raises(DescriptionError) as caught:
         replaced(machine, {"joints.X.drive.nut": -1})
     assert str(caught.value).startswith("machine.yaml: joints.X.drive.nut: found -1")
+
+
+def test_entries_of_lists_go_by_number_or_name() -> None:
+    head = load_description(Path(__file__).parents[2] / "machines" / "prs_machines" / "head_3prs")
+    for path in ("joints.R.interfaces[1].stiffness.ux", "joints.R.interfaces.b2.stiffness.ux"):
+        assert float(replaced(head, {path: 1.0e6}).joints["R_2"].interfaces[1].stiffness.ux) == pytest.approx(1e9)
+    stiffer = replaced(head, {"joints.S_2.stages.s4_2.stiffness.ux": 2.0e5})
+    assert float(stiffer.joints["S_2"].stages[1].stiffness.ux) == pytest.approx(2e8)
+    with pytest.raises(
+        DescriptionError, match=r"found '0' in a list, expected one of b1, b2, or a number such as \[0\]"
+    ):
+        replaced(head, {"joints.R.interfaces.0.stiffness.ux": 1.0e6})
