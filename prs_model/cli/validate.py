@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from ..description import json_schema
 from ..errors import PrsError
 from ..machine import Machine, load_machine
+from ..synthesis import wide_joints
 
 if TYPE_CHECKING:
     from ..modes import Modes
@@ -55,7 +56,7 @@ def _card(machine: Machine) -> dict[str, Any]:
         "machine": machine.name,
         "title": machine.description.file.title,
         "valid": True,
-        "warnings": [*_unheld(machine), *_free(modes)],
+        "warnings": [*_unheld(machine), *_wide(machine), *_free(modes)],
         "coordinates": system.size,
         "first_frequency_hz": float(modes.frequencies[0]),
         "bodies": {
@@ -73,6 +74,16 @@ def _unheld(machine: Machine) -> list[str]:
     held = {end.split(".")[0] for joint in machine.description.joints.values() for end in joint.between}
     loose = [name for name, body in machine.description.bodies.items() if name not in held and not body.grounded]
     return [f"body '{name}' is held by no joint" for name in loose]
+
+
+def _wide(machine: Machine) -> list[str]:
+    gaps = wide_joints(machine.description, machine.parts, machine.joints, machine.configuration())
+    joints = machine.description.joints
+    return [
+        f"joint '{name}': its ends {' and '.join(joints[name].between)} lie {1e3 * gap:.4g} mm apart; "
+        "check 'at', the node positions, the body's frame and the units of its file"
+        for name, gap in gaps.items()
+    ]
 
 
 def _free(modes: Modes) -> list[str]:

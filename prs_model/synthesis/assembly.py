@@ -29,35 +29,60 @@ def assemble(
     Rigid joint directions are eliminated exactly; coordinates with neither stiffness nor mass are left out.
     Raises PrsError when the joints leave no coordinate free.
     """
-    elements = {name: _at(part, configuration) for name, part in parts.items()}
-    blocks = _blocks(elements)
-    placements = {name: configuration.placement(body.frame) for name, body in description.bodies.items()}
-    ends = Ends(elements, blocks, placements)
+    ends = _ends(description, parts, configuration)
     springs = [
         spring for joint in joints for spring in joint.springs(configuration.joint_values, configuration.placement)
     ]
-    mass, stiffness = _block_diagonal(elements, blocks)
+    mass, stiffness = _block_diagonal(ends.elements, ends.blocks)
     motions, constraints, sizes = _joined(springs, ends, stiffness)
     mass, stiffness, expansion, kept = _independent(mass, stiffness, constraints, sizes)
     output = description.file.output
     place, rows, reading = ends.output(output, configuration.placement(output.frame))
-    labels = _labels(elements)
+    labels = _labels(ends.elements)
     return System(
         mass=mass,
         stiffness=stiffness,
         index=tuple(labels[row] for row in kept),
         expansion=expansion,
-        blocks=blocks,
-        elements=elements,
+        blocks=ends.blocks,
+        elements=ends.elements,
         springs=motions,
         output=reading @ expansion[rows],
         output_body=output.node.split(".", 1)[0],
         output_placement=place,
-        placements=placements,
+        placements=ends.placements,
         configuration=configuration,
         stems=description.stems,
         damping_model=description.file.damping,
     )
+
+
+def wide_joints(
+    description: MachineDescription,
+    parts: Mapping[str, SuperElement | TravellingElement],
+    joints: Sequence[ElasticJoint],
+    configuration: Configuration,
+    share: float = 0.01,
+) -> dict[str, float]:
+    """Joints whose two ends lie further apart [m] than `share` of the machine's size, which is seldom meant."""
+    ends = _ends(description, parts, configuration)
+    points = np.vstack([ends.placements[name].act(r) for name, e in ends.elements.items() for r in e.positions])
+    size = float(np.max(np.ptp(points.reshape(-1, 3), axis=0)))
+    gaps: dict[str, float] = {}
+    for joint in joints:
+        for spring in joint.springs(configuration.joint_values, configuration.placement):
+            gaps[joint.name] = max(gaps.get(joint.name, 0.0), ends.gap(spring))
+    return {name: gap for name, gap in gaps.items() if gap > share * size}
+
+
+def _ends(
+    description: MachineDescription,
+    parts: Mapping[str, SuperElement | TravellingElement],
+    configuration: Configuration,
+) -> Ends:
+    elements = {name: _at(part, configuration) for name, part in parts.items()}
+    placements = {name: configuration.placement(body.frame) for name, body in description.bodies.items()}
+    return Ends(elements, _blocks(elements), placements)
 
 
 def _at(part: SuperElement | TravellingElement, configuration: Configuration) -> SuperElement:

@@ -45,6 +45,18 @@ class Ends:
         np.add.at(size, place, np.abs(np.hstack([each for _, _, each in motions])).T)
         return RelativeDisplacement(rows, motion.T, size.T)
 
+    def gap(self, spring: Spring) -> float:
+        """Distance [m] between the nodes at which the spring's ends are read; of a grounded one, from its place."""
+        points = [self._node_place(end, spring.interface) for end in spring.between if end != "ground"]
+        other = points[1] if len(points) == 2 else np.asarray(spring.placement.translation)
+        return float(np.linalg.norm(points[0] - other))
+
+    def _node_place(self, end: str, interface: str | None) -> FloatArray:
+        body, node = end.split(".", 1)
+        element = self.elements[body]
+        middle = np.mean([element.positions[k] for k in _nodes(element, node, interface)], axis=0)
+        return np.asarray(self.placements[body].act(middle))
+
     def output(self, output: Output, frame: pin.SE3) -> tuple[pin.SE3, IntArray, FloatArray]:
         """Where the end-reference point stands, with the axes of the output frame; rows (k,) and its motion (6, k)."""
         body, node = output.node.split(".", 1)

@@ -9,7 +9,7 @@ import pytest
 import prs_model as prs
 from prs_model.joints import along_axes
 from prs_model.joints.springs import ElasticJoint, ElasticStage, Side
-from prs_model.synthesis import System, assemble
+from prs_model.synthesis import System, assemble, wide_joints
 
 
 @pytest.fixture(scope="module")
@@ -44,3 +44,10 @@ def test_without_drives_the_hexapod_is_a_mechanism(hexapod: prs.Machine) -> None
 def test_systems_cannot_be_changed_by_accident(hexapod: prs.Machine) -> None:
     with pytest.raises(ValueError, match="read-only"):
         hexapod.assemble().mass[0, 0] = 1.0
+
+
+def test_ends_that_lie_apart_are_told(hexapod: prs.Machine) -> None:
+    """A node written 80 mm from its joint, and a sound machine."""
+    moved = hexapod.replace({"bodies.platform.options.nodes.joint_2": (0.0578, 0.0689, 0.065)})
+    for machine, expected in ((hexapod, {}), (moved, {"S_2": pytest.approx(0.08, rel=1e-2)})):
+        assert wide_joints(machine.description, machine.parts, machine.joints, machine.configuration()) == expected
