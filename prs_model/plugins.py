@@ -45,6 +45,7 @@ class Reducer(ABC):
     description: ClassVar[str]
     Options: ClassVar[type[Section]]
     needs_source: ClassVar[bool] = True
+    version: ClassVar[int] = 1  # raised when what it reads of the same file changes: stored parts are made again
 
     @abstractmethod
     def read(self, part: PartRequest) -> FiniteElementModel | SuperElement:

@@ -8,16 +8,13 @@ from pathlib import Path
 
 import meshio
 import numpy as np
-from numpy.typing import NDArray
 
+from prs_model.arrays import FloatArray, IntArray
 from prs_model.description.schema import Section
 from prs_model.finite_elements import FiniteElementModel
 from prs_reducers.mesh_file import TetrahedralMesh
 from prs_reducers.solid import SolidOptions, solid_model
 from prs_reducers.tetrahedra import outer_faces
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 EDGES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))  # mid-side nodes 4..9 in VTK's order
 STEEL = {"E": 2.1e11, "nu": 0.3, "density": 7850.0}
@@ -46,7 +43,6 @@ def box(
     return TetrahedralMesh(
         source=Path("box.msh"),
         points=shape(points),
-        labels=np.arange(1, len(points) + 1),
         elements=elements,
         groups={name: faces[chosen] for name, chosen in sides.items()} | {"all": elements},
         surfaces=frozenset(sides),

@@ -28,6 +28,12 @@ class MassProperties:
         return rigid
 
 
+def excess_moment(inertia: FloatArray) -> float:
+    """By how much [kg m^2] a (3, 3) inertia misses that of a body, whose moments each are at most the others' sum."""
+    moments = np.linalg.eigvalsh(inertia)
+    return float(max(0.0, -moments[0], moments[2] - moments[0] - moments[1]))
+
+
 def mass_properties(rigid_mass: FloatArray) -> MassProperties:
     """Read M_rb = phi^T M phi = [[m, -m [c]x], [m [c]x, J_0]], phi the unit rigid motions about the body origin."""
     mass = float(np.trace(rigid_mass[:3, :3])) / 3.0

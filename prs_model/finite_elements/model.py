@@ -21,34 +21,38 @@ from .selection import select, unknown_set
 class FiniteElementModel:
     """Full matrices of one part in its body frame, SI.
 
-    stiffness, mass: (n, n) sparse. coordinates: (n_nodes, 3) m. node_ids: (n_nodes,) labels of the part file.
-    dofs: (n, 2), the node index and component (0..5 for ux..rz) of every row. node_sets: node indices by name;
-    set_weights: areas [m^2] of a set's nodes, where known. triangles: (t, 3) node indices of the outer surface.
+    stiffness, mass: (n, n) sparse. coordinates: (n_nodes, 3) m. dofs: (n, 2), the node index and component (0..5 for
+    ux..rz) of every row. node_ids: (n_nodes,) labels of the part file, where they are known. node_sets: node indices by
+    name; set_weights: areas [m^2] of a set's nodes; areas: (n_nodes,) of all nodes, on the whole outer surface.
+    triangles: (t, 3) node indices of the outer surface.
     """
 
     stiffness: csr_array
     mass: csr_array
     coordinates: FloatArray
-    node_ids: IntArray
     dofs: IntArray
+    node_ids: IntArray | None = None
     node_sets: Mapping[str, IntArray] = field(default_factory=dict)
     set_weights: Mapping[str, FloatArray] = field(default_factory=dict)
+    areas: FloatArray | None = None
     triangles: IntArray | None = None
     provenance: Mapping[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         n, nodes = self.stiffness.shape[0], len(self.coordinates)
-        shapes = {
+        shapes: dict[str, tuple[tuple[int, ...], tuple[int, ...]]] = {
             "stiffness": (self.stiffness.shape, (n, n)),
             "mass": (self.mass.shape, (n, n)),
             "coordinates": (self.coordinates.shape, (nodes, 3)),
-            "node_ids": (self.node_ids.shape, (nodes,)),
             "dofs": (self.dofs.shape, (n, 2)),
         }
+        for name in ("node_ids", "areas"):
+            if (given := getattr(self, name)) is not None:
+                shapes[name] = (given.shape, (nodes,))
         for name, (found, expected) in shapes.items():
             if found != expected:
                 raise PrsError(f"{self.name}: {name} has shape {found}, expected {expected}")
-        for array in (self.coordinates, self.node_ids, self.dofs):
+        for array in (self.coordinates, self.dofs):
             array.setflags(write=False)
 
     @property

@@ -26,9 +26,10 @@ def select(
 ) -> tuple[IntArray, FloatArray]:
     """Node indices (m,) and weights (m,) that a selection means; several ways of naming them are intersected.
 
-    Weights are nodal areas [m^2] where the selected set has them, else one. shift: how far boxes and cylinders have
-    moved [m]. Nodes without DOFs (clamped ones) are left out. Raises PartFileError naming `entry` when a set or label
-    is unknown or nothing is left, with what each part of the selection found.
+    Weights are nodal areas [m^2]: those of the selected set where it has them, else those of the outer surface; all are
+    zero when no area is known. shift: how far boxes and cylinders have moved [m]. Nodes without DOFs (clamped ones) are
+    left out. Raises PartFileError naming `entry` when a set or label is unknown or nothing is left, with what each part
+    of the selection found.
     """
     masks = dict(_masks(model, selection, np.asarray(shift, dtype=float), entry))
     if not masks:
@@ -74,6 +75,10 @@ def _mask_of(model: FiniteElementModel, nodes: IntArray) -> Mask:
 
 
 def _labelled(model: FiniteElementModel, labels: tuple[NodeId, ...], entry: str) -> IntArray:
+    if model.node_ids is None:
+        raise PartFileError(
+            model.source, f"{entry}: its nodes have no labels that are read; name a set, a box or a cylinder instead"
+        )
     place = {int(label): index for index, label in enumerate(model.node_ids)}
     wanted = [int(label) if str(label).lstrip("-").isdigit() else label for label in labels]
     missing = [label for label in wanted if label not in place]
@@ -108,12 +113,10 @@ def _on_cylinder(points: FloatArray, cylinder: Cylinder, slack: float, source: s
 
 
 def _weights(model: FiniteElementModel, selection: Selection, chosen: IntArray) -> FloatArray:
-    if selection.set is None or selection.set not in model.set_weights:
-        return np.ones(len(chosen))
-    weights = np.zeros(len(model.coordinates))
-    weights[model.node_sets[selection.set]] = model.set_weights[selection.set]
-    chosen_weights = weights[chosen]
-    return chosen_weights if np.any(chosen_weights > 0.0) else np.ones(len(chosen))
+    weights = np.zeros(len(model.coordinates)) if model.areas is None else model.areas.copy()
+    if selection.set is not None and selection.set in model.set_weights:
+        weights[model.node_sets[selection.set]] = model.set_weights[selection.set]
+    return np.asarray(weights[chosen], dtype=float)
 
 
 def _nothing(model: FiniteElementModel, masks: dict[str, Mask], alive: Mask, entry: str) -> str:

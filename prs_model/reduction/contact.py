@@ -40,7 +40,7 @@ class Released:
 def reduction_per_station(
     model: FiniteElementModel, ties: Sequence[Sequence[Tie]], moving: BoolArray, n_modes: int, grounded: bool
 ) -> tuple[tuple[SuperElement, ...], FloatArray]:
-    """One super-element per station and the products V_i^T K V_j, V_i^T M V_j (2, s, s, n, n) of their bases.
+    """One super-element per station and the products V_i^T M V_j (s, s, n, n) of their bases.
 
     ties: of every station; moving (k,): which of them travel.
 
@@ -62,12 +62,8 @@ def reduction_per_station(
         arms = np.array([tie.position for tie in station]) - references
         elements.append(to_element(model, station, reduction, grounded=grounded, arms=arms, modes="contact released"))
         bases.append(reduction.basis)
-    return tuple(elements), np.array([_products(matrix, bases) for matrix in (model.stiffness, model.mass)])
-
-
-def _products(matrix: csr_array, bases: list[FloatArray]) -> list[list[FloatArray]]:
-    images = [matrix @ basis for basis in bases]
-    return [[basis.T @ image for image in images] for basis in bases]
+    images = [model.mass @ basis for basis in bases]
+    return tuple(elements), np.array([[basis.T @ image for image in images] for basis in bases])
 
 
 def _release(

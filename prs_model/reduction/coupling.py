@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations
+from itertools import combinations, permutations
 
 import numpy as np
 from scipy.sparse import csr_array
@@ -63,7 +63,8 @@ def rigidified(model: FiniteElementModel, tie: Tie) -> tuple[FiniteElementModel,
         stiffness=csr_array(projection.T @ model.stiffness @ projection),
         mass=csr_array(projection.T @ model.mass @ projection),
         coordinates=np.vstack([model.coordinates, tie.position]),
-        node_ids=np.append(model.node_ids, model.node_ids.max() + 1),
+        node_ids=None,
+        areas=None,
         dofs=np.vstack([model.dofs[kept], node]),
     )
     return smaller, projection
@@ -79,14 +80,30 @@ def check_ties(model: FiniteElementModel, ties: Sequence[Tie]) -> None:
                 "about it; select nodes of a surface",
             )
     for one, other in combinations([tie for tie in ties if tie.coupling == "rigid"], 2):
-        shared = model.node_ids[np.intersect1d(one.indices, other.indices)]
+        shared = np.intersect1d(one.indices, other.indices)
         if len(shared):
-            listed = ", ".join(map(str, shared[:6])) + (f" and {len(shared) - 6} more" if len(shared) > 6 else "")
+            first = ", ".join(f"{x:.4g}" for x in model.coordinates[shared[0]])
             raise PartFileError(
                 model.source,
-                f"interfaces {one.node} and {other.node} share the nodes {listed}, which cannot follow two rigid "
-                "nodes at once; make the selections apart, or tie one of them with 'coupling: averaged'",
+                f"interfaces {one.node} and {other.node} share {len(shared)} nodes, the first at ({first}) m, which "
+                "cannot follow two rigid nodes at once; make the selections apart, or tie one of them with "
+                "'coupling: averaged'",
             )
+    for averaged, other in permutations(ties, 2):
+        if averaged.coupling == "averaged" and _follows(averaged, other):
+            raise PartFileError(
+                model.source,
+                f"interface {averaged.node} is averaged over nodes that {other.node} moves already, so it repeats "
+                f"{other.node}; use one interface for both, or select other nodes",
+            )
+
+
+def _follows(averaged: Tie, other: Tie) -> bool:
+    """Whether the motion of an averaged node is fixed by another's: nodes inside a rigid tie, or the same average."""
+    if other.coupling == "rigid":
+        return bool(np.all(np.isin(averaged.indices[averaged.weights > 0.0], other.indices)))
+    (a, b), (one, two) = (averaged.indices, other.indices), (averaged.weights, other.weights)
+    return np.array_equal(a, b) and np.allclose(one / one.sum(), two / two.sum())
 
 
 def _holds_six_motions(model: FiniteElementModel, tie: Tie) -> bool:

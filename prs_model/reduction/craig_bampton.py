@@ -11,13 +11,14 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import eigh
-from scipy.sparse import csr_array, vstack
+from scipy.sparse import coo_array, csr_array, vstack
 from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh
 
-from ..arrays import BoolArray, FloatArray, IntArray
+from ..arrays import FloatArray, IntArray
 from ..errors import PartFileError, PhysicsError
 from ..finite_elements import FiniteElementModel
+from ..finite_elements.rigid_motion import transfer
 from .constrained import ConstrainedSolve, constrained_solver
 from .coupling import Tie, averaging_matrix, check_ties, rigid_rows
 
@@ -57,7 +58,7 @@ def craig_bampton(model: FiniteElementModel, ties: Sequence[Tie], n_modes: int) 
     Raises PartFileError for ties that cannot hold or too many modes, PhysicsError for a part that is not in one piece.
     """
     part = hold(model, ties)
-    return _reduced(model, static_modes(part), fixed_interface_modes(part, n_modes))
+    return _reduced(model, ties, static_modes(part), fixed_interface_modes(part, n_modes))
 
 
 def hold(model: FiniteElementModel, ties: Sequence[Tie]) -> HeldPart:
@@ -75,7 +76,7 @@ def hold(model: FiniteElementModel, ties: Sequence[Tie]) -> HeldPart:
         else:
             averages.append(averaging_matrix(model, tie))
             averaged.append(columns)
-    _check_one_piece(model, is_tied)
+    _check_one_piece(model, ties)
     constraints, interior = csr_array(vstack(averages)), np.flatnonzero(~is_tied)
     solve = _solver(model, interior, csr_array(constraints[:, interior]), held=bool(np.any(is_tied)))
     return HeldPart(model, boundary, constraints, np.concatenate(averaged), interior, solve)
@@ -126,27 +127,38 @@ def _solver(model: FiniteElementModel, interior: IntArray, constraints: csr_arra
         raise PhysicsError(model.name, "part is held by its interfaces", 0.0, 0.0, cause) from error
 
 
-def _check_one_piece(model: FiniteElementModel, is_tied: BoolArray) -> None:
-    """Raises PhysicsError when a piece of the mesh is joined to nothing: not to the rest, a rigid tie or the ground."""
+def _check_one_piece(model: FiniteElementModel, ties: Sequence[Tie]) -> None:
+    """Raises PhysicsError unless the pieces of the mesh are one part: joined by rigid ties or by the ground."""
     pieces, of_row = connected_components(model.stiffness, directed=False)
     if pieces == 1:
         return
     rigid = model.rigid_body_modes(about=model.coordinates.mean(axis=0))
     force = np.linalg.norm(model.stiffness @ rigid, axis=1)
-    held = is_tied | (force > 1e-9 * np.linalg.norm(rigid) * abs(model.stiffness).max())
-    loose = pieces - len(np.unique(of_row[held]))
-    if loose:
-        cause = f"of its {pieces} pieces, {loose} are not held; check that the volumes of the mesh share their nodes"
-        raise PhysicsError(model.name, "pieces of the part", float(pieces), 1.0, cause)
+    held = force > 1e-9 * np.linalg.norm(rigid) * abs(model.stiffness).max()
+    groups = [of_row[held], *(of_row[model.rows_of(tie.indices)] for tie in ties if tie.coupling == "rigid")]
+    one = np.concatenate([np.full(len(group), group[0]) for group in groups if len(group)] or [np.arange(0)])
+    joined = coo_array((np.ones(len(one)), (one, np.concatenate(groups))), shape=(pieces, pieces))
+    whole = connected_components(joined, directed=False)[0]
+    if whole > 1:
+        cause = (
+            f"the {pieces} pieces of the mesh are not one part: neither a rigid interface nor the ground joins them; "
+            "check that the volumes of the mesh share their nodes"
+        )
+        raise PhysicsError(model.name, "pieces of the part", float(whole), 1.0, cause)
 
 
 def _free_motions(model: FiniteElementModel) -> FloatArray:
-    """Rigid motions that cost no energy: (n, 6) for a free part, fewer columns for one that is held."""
+    """(n, r): the model's DOFs in its rigid motions that cost no energy."""
+    return np.asarray(model.rigid_body_modes(about=model.coordinates.mean(axis=0)) @ _free(model))
+
+
+def _free(model: FiniteElementModel) -> FloatArray:
+    """(6, r): rigid motions of the nodes' centre that cost no energy; r = 6 for a free part, 0 for one that is held."""
     rigid = model.rigid_body_modes(about=model.coordinates.mean(axis=0))
-    rigid = rigid / np.linalg.norm(rigid, axis=0)
-    energy, combination = eigh(rigid.T @ (model.stiffness @ rigid))
+    size = np.linalg.norm(rigid, axis=0)
+    energy, combination = eigh((rigid / size).T @ (model.stiffness @ (rigid / size)))
     stiffest = float(model.stiffness.diagonal().max())
-    return np.asarray(rigid @ combination[:, energy < 1e-10 * stiffest])
+    return np.asarray(combination[:, energy < 1e-10 * stiffest] / size[:, None])
 
 
 def _normalised(model: FiniteElementModel, shapes: FloatArray) -> FloatArray:
@@ -158,16 +170,31 @@ def _normalised(model: FiniteElementModel, shapes: FloatArray) -> FloatArray:
     return np.asarray(shapes * np.sign(shapes[leading, np.arange(shapes.shape[1])]))
 
 
-def _reduced(model: FiniteElementModel, statics: FloatArray, modes: FloatArray) -> Reduction:
-    """Project; what Craig-Bampton makes zero or one exactly (K between statics and modes, modal mass) is written so."""
+def _reduced(model: FiniteElementModel, ties: Sequence[Tie], statics: FloatArray, modes: FloatArray) -> Reduction:
+    """Project; what is exactly zero or one is written so: K of free motions, K of statics and modes, modal mass."""
     first = statics.shape[1]
     basis = np.hstack([statics, modes])
     stiffness = np.zeros((basis.shape[1],) * 2)
-    stiffness[:first, :first] = _symmetric(statics.T @ (model.stiffness @ statics))
+    stiffness[:first, :first] = _without(_free_coordinates(model, ties), statics.T @ (model.stiffness @ statics))
     stiffness[first:, first:] = np.diag(np.einsum("ij,ij->j", modes, model.stiffness @ modes))
     mass = _symmetric(basis.T @ (model.mass @ basis))
     mass[first:, first:] = np.eye(modes.shape[1])
     return Reduction(basis, stiffness, mass, modes.shape[1])
+
+
+def _free_coordinates(model: FiniteElementModel, ties: Sequence[Tie]) -> FloatArray:
+    """(6 k, r): the ties' coordinates in the part's free motions."""
+    arms = np.array([tie.position for tie in ties]) - model.coordinates.mean(axis=0)
+    return np.asarray(transfer(arms).reshape(-1, 6) @ _free(model))
+
+
+def _without(free: FloatArray, stiffness: FloatArray) -> FloatArray:
+    """The stiffness (n, n) with none left in the motions `free` (n, r), which only round-off has put there."""
+    if free.shape[1] == len(stiffness):
+        return np.zeros_like(stiffness)
+    q = np.linalg.qr(free)[0]
+    others = np.eye(len(stiffness)) - q @ q.T
+    return _symmetric(others @ stiffness @ others)
 
 
 def _symmetric(matrix: FloatArray) -> FloatArray:

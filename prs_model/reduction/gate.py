@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..arrays import FloatArray
 from ..errors import PhysicsError
+from ..finite_elements.mass import excess_moment, mass_properties
 from ..finite_elements.rigid_motion import transfer
 from .super_element import SuperElement
 
-SYMMETRY, DEFINITE, RIGID, TRANSLATION, MODAL = 1e-9, 1e-9, 1e-8, 1e-6, 1e-8
+SYMMETRY, DEFINITE, RIGID, HELD, BODY, MODAL = 1e-9, 1e-9, 1e-8, 1e-8, 1e-6, 1e-8
+SOFT = 1e6  # s^-2: beside a stiffness that makes the mass oscillate this slowly, round-off does not count
 
 
 @dataclass(frozen=True)
@@ -43,28 +45,34 @@ class GateReport:
 
 def check(element: SuperElement) -> GateReport:
     """Run every check. Raises PhysicsError for the first that fails."""
-    passed = []
-    for each in _checks(element):
+    return passed(element.name, _checks(element))
+
+
+def passed(subject: str, checks: Iterable[Check]) -> GateReport:
+    """The report of checks that pass. Raises PhysicsError for the first that fails."""
+    done = []
+    for each in checks:
         if not each.passed:
-            raise PhysicsError(element.name, each.name, each.figure, each.limit, each.cause)
-        passed.append(each)
-    return GateReport(element.name, tuple(passed))
+            raise PhysicsError(subject, each.name, each.figure, each.limit, each.cause)
+        done.append(each)
+    return GateReport(subject, tuple(done))
 
 
 def _checks(element: SuperElement) -> Iterator[Check]:
     yield _finite(element)
     yield _symmetry("stiffness is symmetric", element.stiffness)
     yield _symmetry("mass is symmetric", element.mass)
-    yield _definite("mass is not negative", element.mass, "a flipped sign or digit, or mass rows in another order")
-    yield _definite(
-        "stiffness is not negative", element.stiffness, "a flipped sign or digit, or a stress-stiffened part"
-    )
+    cause = "a flipped sign or digit, or mass rows in another order"
+    yield _definite("mass is not negative", element.mass, np.zeros(element.size), cause)
+    soft, cause = SOFT * np.diag(element.mass), "a flipped sign or digit, or a stress-stiffened part"
+    yield _definite("stiffness is not negative", element.stiffness, soft, cause)
     yield _rigid_motion(element)
     if element.grounded:
         yield _held(element)
     else:
         yield _free(element)
         yield _equal_masses(element)
+        yield _mass_of_a_body(element)
     if element.provenance.get("modes") == "fixed-interface":
         yield _modal_block(element)
 
@@ -81,14 +89,18 @@ def _symmetry(name: str, matrix: FloatArray) -> Check:
     return Check(name, figure, SYMMETRY, cause)
 
 
-def _definite(name: str, matrix: FloatArray, cause: str) -> Check:
-    """The lowest eigenvalue once every coordinate is scaled to a unit diagonal, so that units do not matter."""
+def _definite(name: str, matrix: FloatArray, floor: FloatArray, cause: str) -> Check:
+    lowest = float(np.min(np.linalg.eigvalsh(_with_unit_diagonal(matrix, floor)[0]), initial=0.0))
+    return Check(name, -lowest, DEFINITE, f"{cause}: compare with the matrices in the part's solver")
+
+
+def _with_unit_diagonal(matrix: FloatArray, floor: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """A / s s^T and s (n,), the roots of the diagonal (of `floor` where that is more), so that units do not matter."""
     diagonal = np.diag(matrix)
-    largest = float(np.max(np.abs(diagonal), initial=0.0))
-    scale = 1.0 / np.sqrt(np.maximum(diagonal, 1e-12 * largest)) if largest > 0.0 else np.ones(len(matrix))
-    scaled = (matrix + matrix.T) / 2.0 * np.outer(scale, scale)
-    lowest = np.linalg.eigvalsh(scaled)[0] if len(matrix) else 0.0
-    return Check(name, max(0.0, -float(lowest)), DEFINITE, f"{cause}: compare with the matrices in the part's solver")
+    least = np.maximum(floor, 1e-12 * np.max(np.abs(diagonal), initial=0.0))
+    size = np.sqrt(np.maximum(diagonal, least))
+    scale = np.divide(1.0, size, out=np.ones_like(size), where=size > 0.0)
+    return (matrix + matrix.T) / 2.0 * np.outer(scale, scale), size
 
 
 def _rigid_motion(element: SuperElement) -> Check:
@@ -101,24 +113,27 @@ def _rigid_motion(element: SuperElement) -> Check:
     return Check("nodes follow a rigid motion", figure, RIGID, cause)
 
 
-def _rigid_residual(element: SuperElement) -> float:
+def _free(element: SuperElement) -> Check:
     phi = element.rigid_body_modes()
     force, size = np.linalg.norm(element.stiffness @ phi, axis=0), np.linalg.norm(phi, axis=0)
-    return float(max(map(_ratio, force, np.linalg.norm(element.stiffness) * size), default=0.0))
-
-
-def _free(element: SuperElement) -> Check:
+    stiffness = max(np.linalg.norm(element.stiffness), SOFT * np.linalg.norm(element.mass))
+    figure = float(max(map(_ratio, force, stiffness * size), default=0.0))
     cause = (
         "rigid motion costs energy: rows in another order, output frames, wrong length unit or a missing node; "
         "if the part is held to the ground, say 'grounded: true'"
     )
-    return Check("rigid motion is free, |K phi| / |K| |phi|", _rigid_residual(element), RIGID, cause)
+    return Check("rigid motion is free, |K phi| / |K| |phi|", figure, RIGID, cause)
 
 
 def _held(element: SuperElement) -> Check:
-    free = 1.0 if _rigid_residual(element) < RIGID else 0.0
-    cause = "'grounded: true' is said, but nothing holds the part: clamp a node set, or leave 'grounded' out"
-    return Check("rigid motion is held", free, 0.0, cause)
+    scaled, size = _with_unit_diagonal(element.stiffness, np.zeros(element.size))
+    motions = np.linalg.qr(element.rigid_body_modes() * size[:, None])[0]
+    free = int(np.count_nonzero(np.linalg.eigvalsh(motions.T @ scaled @ motions) < HELD))
+    cause = (
+        f"'grounded: true' is said, but {free} of 6 rigid motions cost no energy: "
+        "clamp a node set that holds the part, or leave 'grounded' out"
+    )
+    return Check("rigid motion is held", free, 0, cause)
 
 
 def _equal_masses(element: SuperElement) -> Check:
@@ -127,7 +142,20 @@ def _equal_masses(element: SuperElement) -> Check:
     mean = float(np.trace(masses)) / 3.0
     figure = _ratio(np.linalg.norm(masses - mean * np.eye(3)), abs(mean))
     cause = "the part weighs differently along x, y and z: rows in another order, or a node's mass is missing"
-    return Check("three equal translational masses", figure, TRANSLATION, cause)
+    return Check("three equal translational masses", figure, BODY, cause)
+
+
+def _mass_of_a_body(element: SuperElement) -> Check:
+    """phi^T M phi = [[m, -m [c]x], [m [c]x, J]]: [c]x is skew, and no moment of inertia exceeds the other two's sum."""
+    phi = element.rigid_body_modes()
+    rigid = phi.T @ element.mass @ phi
+    mass, coupling = float(rigid[0, 0]), rigid[3:, :3]
+    reach = max(np.linalg.norm(element.positions, axis=1).max(initial=0.0), 1e-3)
+    inertia = float(np.trace(rigid[3:, 3:])) + mass * reach**2
+    skew = _ratio(np.linalg.norm(coupling + coupling.T), np.sqrt(max(0.0, mass * inertia)))
+    excess = _ratio(excess_moment(mass_properties(rigid).inertia), inertia)
+    cause = "no body has such a mass: rows in another order, a missing node, or wrong output frames"
+    return Check("rigid mass is that of a body", max(skew, excess), BODY, cause)
 
 
 def _modal_block(element: SuperElement) -> Check:

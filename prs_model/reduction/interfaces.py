@@ -46,7 +46,8 @@ def _ties(
     parts: tuple[Selection, ...] = interface.members or (interface,)
     chosen = [select(model, _only_selection(part), shift=shift, entry=_entry(entry, part)) for part in parts]
     if settings.tie_of(interface) == "interface" and interface.members:
-        for member, (indices, weights) in zip(interface.members, chosen, strict=True):
+        for member, each in zip(interface.members, chosen, strict=True):
+            indices, weights = _union([each])
             position = _position(model, member.at, shift, indices, weights)
             yield Tie(f"{name}.{member.name}", indices, weights, position, coupling)
     else:
@@ -63,10 +64,12 @@ def _only_selection(part: Selection) -> Selection:
 
 
 def _union(chosen: list[tuple[IntArray, FloatArray]]) -> tuple[IntArray, FloatArray]:
-    """All nodes once; a node that several members share has the sum of its weights, as areas add up."""
+    """All nodes once, with the sum of their areas; with equal weights when the nodes of a member have no area."""
     indices, place = np.unique(np.concatenate([nodes for nodes, _ in chosen]), return_inverse=True)
-    weights = np.bincount(place, weights=np.concatenate([weights for _, weights in chosen]))
-    return indices, np.asarray(weights, dtype=float)
+    if all(np.any(areas > 0.0) for _, areas in chosen):
+        areas = np.concatenate([areas for _, areas in chosen])
+        return indices, np.asarray(np.bincount(place, weights=areas), dtype=float)
+    return indices, np.ones(len(indices))
 
 
 def _position(

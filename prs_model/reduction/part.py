@@ -30,7 +30,8 @@ logger = logging.getLogger("prs_model")
 
 S = TypeVar("S", bound=Section)
 
-_made: dict[tuple[object, ...], Element] = {}
+MOST_KEPT = 64
+_made: dict[tuple[object, ...], Element] = {}  # the latest elements of this process, oldest first
 
 
 def build_part(
@@ -56,14 +57,15 @@ def build_part(
     request = plugins.PartRequest(stem, source, options, _file_units(stem, body, folder), body)
     if source is None:
         return _read(reducer, request, body, settings)[0]
-    text = recipe(body, options, settings)
+    text = recipe(body, options, settings, reducer.version)
     store = None if defaults.store is None else StoredPart(folder / defaults.store, stem, text, source)
-    key = (stem, text, source.resolve(), _stamp(source), _stamp(store.path) if store else None)
-    if key not in _made:
-        _made[key] = _found_or_made(reducer, request, body, settings, text, store)
-        if store is not None:
-            _made[*key[:-1], _stamp(store.path)] = _made[key]
-    return _travelling_with(_made[key], body)
+    element = _made.get(_key(stem, text, source, store))
+    if element is None:
+        element = _found_or_made(reducer, request, body, settings, text, store)
+        _made[_key(stem, text, source, store)] = element
+        if len(_made) > MOST_KEPT:
+            del _made[next(iter(_made))]
+    return _travelling_with(element, body)
 
 
 def reduce(
@@ -143,6 +145,11 @@ def _file_units(name: str, body: Body, folder: Path) -> Units | None:
         raise PartFileError(folder / (body.source or ""), f"bodies.{name}.units: {error}") from error
 
 
+def _key(stem: str, text: str, source: Path, store: StoredPart | None) -> tuple[object, ...]:
+    stored = (None, None) if store is None else (store.path.resolve(), _stamp(store.path))
+    return stem, text, source.resolve(), _stamp(source), *stored
+
+
 def _stamp(path: Path) -> tuple[int, int] | None:
     """What changes when a file does; None when there is none."""
     try:
@@ -183,7 +190,7 @@ def _read(
     part = reducer.read(request)
     place = str(request.source or f"bodies.{request.name}")
     if isinstance(part, FiniteElementModel):
-        element, ours = _reduced(part, body, settings, place), True
+        element, ours = _from_model(part, body, settings, place), True
     else:
         element, ours = named_by_interfaces(part, body.interfaces, place), False
         element = replace(element, grounded=element.grounded or body.grounded)
@@ -192,7 +199,7 @@ def _read(
     return element, ours
 
 
-def _reduced(model: FiniteElementModel, body: Body, settings: Settings, place: str) -> Element:
+def _from_model(model: FiniteElementModel, body: Body, settings: Settings, place: str) -> Element:
     model = replace(model, provenance={**model.provenance, "name": Path(place).stem, "source": place})
     if body.clamped:
         model = model.clamp(body.clamped)

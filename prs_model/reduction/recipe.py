@@ -11,7 +11,7 @@ from typing import Any
 
 from ..description.schema import Body, Coupling, Interface, ReductionDefaults, Section, Tie
 
-VERSION = 2  # raised when the reduction itself changes its results
+VERSION = 3  # raised when the reduction itself changes its results
 
 
 @dataclass(frozen=True)
@@ -37,11 +37,12 @@ class Settings:
         return interface.tie or self.tie
 
 
-def recipe(body: Body, options: Section, settings: Settings) -> str:
+def recipe(body: Body, options: Section, settings: Settings, reducer_version: int = 1) -> str:
     """Canonical JSON, in SI. The part's place in the machine (frame, joint it travels with) is left out."""
     content = {
         "version": VERSION,
         "reducer": body.reducer,
+        "reducer_version": reducer_version,
         "source": body.source,
         "units": body.units,
         "options": _plain(options),

@@ -4,22 +4,23 @@ from __future__ import annotations
 
 import json
 import os
-import zipfile
-import zlib
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from tempfile import NamedTemporaryFile
+from typing import IO, Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Strict
 
-from ..errors import PartFileError, PrsError
+from ..errors import PartFileError, short
 from .super_element import SuperElement
 from .surface import Surface
 from .travelling import TravellingElement
 
 FORMAT = "prs-model super-element"
-VERSION = 1
+VERSION = 2
 
 Arrays = dict[str, NDArray[Any]]
 
@@ -35,34 +36,48 @@ def save(element: SuperElement | TravellingElement, path: str | Path) -> None:
         arrays["stations"] = element.stations
         if element.products is not None:
             arrays["products"] = element.products
-    draft = path.with_name(f".{path.name}.{os.getpid()}")
+    text = np.array(json.dumps(header, sort_keys=True))
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        with draft.open("wb") as file:
-            np.savez_compressed(file, allow_pickle=False, header=np.array(json.dumps(header, sort_keys=True)), **arrays)
-        draft.replace(path)
+        with whole(path) as file:
+            np.savez_compressed(file, allow_pickle=False, header=text, **arrays)
     except OSError as error:
         raise PartFileError(path, f"cannot be written: {error.strerror or error}") from error
-    finally:
-        with suppress(OSError):
-            draft.unlink(missing_ok=True)
+
+
+@contextmanager
+def whole(path: Path) -> Iterator[IO[bytes]]:
+    """A file that appears at `path` once it is written, or not at all, whoever else writes there. Raises OSError."""
+    umask = os.umask(0)
+    os.umask(umask)
+    with NamedTemporaryFile(dir=path.parent, prefix=f".{path.name}.", delete=False) as file:
+        try:
+            yield file
+            file.flush()
+            os.fsync(file.fileno())
+            os.chmod(file.name, 0o666 & ~umask)
+            os.replace(file.name, path)
+        except BaseException:
+            os.unlink(file.name)
+            raise
 
 
 def load(path: str | Path) -> SuperElement | TravellingElement:
     """Read what `save` wrote. Raises PartFileError when the file is missing, damaged or something else."""
     path = Path(path)
     try:
-        with path.open("rb") as opened, np.load(opened, allow_pickle=False) as file:
-            arrays = {name: file[name] for name in file.files}
-        header = json.loads(str(arrays.pop("header")))
-        return _element(header, arrays, path)
+        with path.open("rb") as opened:
+            if opened.read(2) != b"PK":
+                raise PartFileError(path, "is no .npz file (a zip archive of arrays): make it again from its source")
+            opened.seek(0)
+            with np.load(opened, allow_pickle=False) as file:
+                arrays = {name: file[name] for name in file.files}
+        return _element(json.loads(str(arrays.pop("header"))), arrays, path)
     except PartFileError:
         raise
     except FileNotFoundError as error:
         raise PartFileError(path, "there is no such file") from error
-    except (OSError, ValueError, KeyError, TypeError, EOFError, AttributeError, IndexError) as error:
-        raise _damaged(path, error) from error
-    except (zipfile.BadZipFile, zlib.error, NotImplementedError, PrsError) as error:
+    except Exception as error:  # whatever zip, numpy or json make of damaged bytes
         raise _damaged(path, error) from error
 
 
@@ -72,6 +87,17 @@ def load_super_element(path: str | Path) -> SuperElement:
     if isinstance(element, TravellingElement):
         raise PartFileError(path, f"holds a part that travels with joint {element.joint}, expected one that does not")
     return element
+
+
+class _Header(BaseModel):
+    model_config = ConfigDict(strict=True, extra="forbid")
+
+    nodes: Annotated[tuple[str, ...], Strict(False)]
+    labels: Annotated[tuple[str, ...], Strict(False)]
+    n_modes: int
+    grounded: bool
+    provenance: dict[str, str]
+    joint: str | None = None
 
 
 def _header(element: SuperElement) -> dict[str, Any]:
@@ -104,40 +130,53 @@ def _stacked(parts: list[NDArray[Any]]) -> NDArray[Any]:
     return np.array(parts[:1] if same else parts)
 
 
-def _element(header: dict[str, Any], arrays: Arrays, path: Path) -> SuperElement | TravellingElement:
-    if header["format"] != FORMAT:
-        raise PartFileError(path, f"is '{header['format']}', expected '{FORMAT}'")
-    if header["version"] != VERSION:
-        raise PartFileError(
-            path, f"has format version {header['version']}, this program reads {VERSION}: make the file again"
-        )
+def _element(content: dict[str, Any], arrays: Arrays, path: Path) -> SuperElement | TravellingElement:
+    found, version = content.pop("format"), content.pop("version")
+    if found != FORMAT:
+        raise PartFileError(path, f"is '{short(found)}', expected '{FORMAT}'")
+    if version != VERSION:
+        raise PartFileError(path, f"has format version {version}, this program reads {VERSION}: make the file again")
+    header = _Header.model_validate(content)
     if any(array.dtype.kind not in "fi" or not np.all(np.isfinite(array)) for array in arrays.values()):
         raise PartFileError(path, "damaged: it holds values that are not finite numbers; make it again from its source")
     stations = arrays.get("stations")
     elements = tuple(_station(header, arrays, i) for i in range(1 if stations is None else len(stations)))
     if stations is None:
         return elements[0]
-    return TravellingElement(header["joint"], stations, elements, arrays.get("products"))
+    if header.joint is None:
+        raise ValueError("no joint for its stations")
+    return TravellingElement(header.joint, stations, elements, arrays.get("products"))
 
 
-def _station(header: dict[str, Any], arrays: Arrays, index: int) -> SuperElement:
+def _station(header: _Header, arrays: Arrays, index: int) -> SuperElement:
     def of(name: str) -> NDArray[Any]:
         return np.asarray(arrays[name][index if len(arrays[name]) > 1 else 0])
 
-    surface = Surface(arrays["points"], arrays["triangles"], of("recovery")) if "points" in arrays else None
+    surface = _surface(arrays, of("recovery"), of("stiffness").shape[0]) if "points" in arrays else None
     return SuperElement(
         stiffness=of("stiffness"),
         mass=of("mass"),
-        nodes=tuple(header["nodes"]),
+        nodes=header.nodes,
         positions=of("positions"),
         motions=of("motions"),
-        n_modes=header["n_modes"],
-        grounded=header["grounded"],
+        n_modes=header.n_modes,
+        grounded=header.grounded,
         surface=surface,
-        labels=tuple(header["labels"]),
-        provenance=header["provenance"],
+        labels=header.labels,
+        provenance=header.provenance,
     )
 
 
+def _surface(arrays: Arrays, recovery: NDArray[Any], size: int) -> Surface:
+    points, triangles = arrays["points"], arrays["triangles"]
+    p = len(points)
+    if points.shape != (p, 3) or triangles.ndim != 2 or triangles.shape[1] != 3 or triangles.dtype.kind != "i":
+        raise ValueError(f"points have shape {points.shape} and triangles {triangles.shape} of {triangles.dtype}")
+    if recovery.shape != (p, 3, size) or not np.all((triangles >= 0) & (triangles < p)):
+        raise ValueError(f"recovery has shape {recovery.shape}, expected {(p, 3, size)}, or triangles are of no point")
+    return Surface(points, triangles, recovery)
+
+
 def _damaged(path: Path, error: Exception) -> PartFileError:
-    return PartFileError(path, f"damaged, or not a stored super-element ({error}); make it again from its source")
+    what = short(" ".join(str(error).split()) or type(error).__name__)
+    return PartFileError(path, f"damaged, or not a stored super-element ({what}); make it again from its source")

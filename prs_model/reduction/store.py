@@ -40,6 +40,9 @@ class StoredPart:
                 raise PartFileError(self.source, self._nowhere())
             return None
         element = storage.load(self.path)
+        if (made_by := provenance(element).get("recipe", "")) != self.recipe:
+            what = "; ".join(_differences(self.recipe, made_by)) or "it has none"
+            raise PartFileError(self.path, f"holds another recipe than its name says ({what}); delete it")
         if self.source.exists() and provenance(element).get("source_sha256") != file_hash(self.source):
             logger.info("%s: %s has changed since %s was made from it", self.stem, self.source.name, self.path.name)
             return None
@@ -53,18 +56,39 @@ class StoredPart:
             logger.warning("%s: not stored: %s", self.stem, error)
 
     def _nowhere(self) -> str:
+        others = {path.name: _differences(self.recipe, _recipe_in(path)) for path in self._neighbours()}
+        known = {name: what for name, what in others.items() if what}
+        if not known and not (self.folder.parent / "rebuild.py").exists():
+            return f"there is no such file; correct bodies.{self.stem}.source"
         sentences = [f"there is no such file, and {self.folder} holds no '{self.path.name}' reduced from it"]
-        for path in sorted(self.folder.glob(f"{self.stem}-*.npz")):
-            stored = provenance(storage.load(path)).get("recipe", "{}")
-            sentences.append(f"'{path.name}' there differs in {'; '.join(differences(self.recipe, stored))}")
-        sentences.append(self._remedy())
-        return "; ".join(sentences)
+        if known:
+            closest = min(sorted(known), key=lambda name: len(known[name]))
+            sentences.append(f"'{closest}' there differs in {'; '.join(known[closest])}")
+        return "; ".join([*sentences, self._remedy()])
+
+    def _neighbours(self) -> list[Path]:
+        return sorted(self.folder.glob(f"{self.stem}-*.npz"))
 
     def _remedy(self) -> str:
         machine = self.folder.parent
         if (machine / "rebuild.py").exists():
             return f"make it with: {rebuild_command(machine)}"
         return "put the part file there, correct 'source', or go back to the settings it was reduced with"
+
+
+def _recipe_in(path: Path) -> str:
+    """The recipe of a stored file; empty when the file cannot be read."""
+    try:
+        return provenance(storage.load(path)).get("recipe", "")
+    except PartFileError:
+        return ""
+
+
+def _differences(wanted: str, stored: str) -> list[str]:
+    try:
+        return differences(wanted, stored)
+    except (ValueError, RecursionError):  # no recipe
+        return []
 
 
 def provenance(element: Element) -> dict[str, str]:

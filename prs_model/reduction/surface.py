@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import fast_simplification
 import numpy as np
@@ -17,11 +19,18 @@ MOST_TRIANGLES = 1600
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """points (p, 3) [m] in the body frame, triangles (t, 3), recovery (p, 3, n): displacement of each point from u."""
+    """points (p, 3) [m] in the body frame, triangles (t, 3), recovery (p, 3, n): displacement of each point from u.
+
+    source: the recovery, or what computes it when a picture first asks for it.
+    """
 
     points: FloatArray
     triangles: IntArray
-    recovery: NDArray[np.float32]
+    source: NDArray[np.float32] | Callable[[], NDArray[np.float32]]
+
+    @cached_property
+    def recovery(self) -> NDArray[np.float32]:
+        return self.source() if callable(self.source) else self.source
 
 
 def decimate(model: FiniteElementModel, basis: FloatArray, most_triangles: int = MOST_TRIANGLES) -> Surface | None:

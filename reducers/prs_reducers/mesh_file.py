@@ -24,7 +24,7 @@ DIMENSIONS = {"vertex": 0, "line": 1, "triangle": 2, "quad": 2, "tetra": 3, "hex
 
 @dataclass(frozen=True, eq=False)
 class TetrahedralMesh:
-    """points (n, 3) in the file's unit, all of them used; labels (n,): their place in the file, from 1.
+    """points (n, 3) in the file's unit, all of them used. meshio keeps no labels of nodes, so there are none.
 
     elements (e, 4 or 10) in VTK's order. groups: the nodes of each named group as an array of any shape, one row per
     face for those in `surfaces`; volumes: element indices of the groups made of elements.
@@ -32,7 +32,6 @@ class TetrahedralMesh:
 
     source: Path
     points: FloatArray
-    labels: IntArray
     elements: IntArray
     groups: Mapping[str, IntArray]
     surfaces: frozenset[str]
@@ -52,7 +51,6 @@ def read_mesh(path: Path) -> TetrahedralMesh:
     return TetrahedralMesh(
         source=path,
         points=np.asarray(mesh.points, dtype=float)[used],
-        labels=used + 1,
         elements=elements,
         groups=_node_groups(mesh, named, place, surfaces),
         surfaces=surfaces,

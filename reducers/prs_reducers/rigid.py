@@ -10,6 +10,7 @@ from pydantic_core import PydanticCustomError
 
 from prs_model.description.quantity import Inertia, Mass, Quantity
 from prs_model.description.schema import Point, Section
+from prs_model.finite_elements.mass import excess_moment
 from prs_model.finite_elements.rigid_motion import transfer
 from prs_model.plugins import PartRequest, Reducer
 from prs_model.reduction import SuperElement
@@ -34,9 +35,9 @@ class InertiaTensor(Section):
     @model_validator(mode="after")
     def _belongs_to_a_body(self) -> InertiaTensor:
         """The moments of a real body are not negative, and none exceeds the sum of the other two (it may equal it)."""
-        moments = np.linalg.eigvalsh(self.matrix().astype(float))
-        if moments[0] < -1e-9 * abs(moments[2]) or moments[2] > (moments[0] + moments[1]) * (1.0 + 1e-9):
-            found = ", ".join(f"{moment:.4g}" for moment in moments)
+        matrix = self.matrix().astype(float)
+        if excess_moment(matrix) > 1e-9 * np.linalg.norm(matrix):
+            found = ", ".join(f"{moment:.4g}" for moment in np.linalg.eigvalsh(matrix))
             raise PydanticCustomError(
                 "inertia",
                 f"found principal moments {found} kg m^2, which no body has: each is at most the sum of the others",

@@ -83,12 +83,11 @@ def solid_model(mesh: TetrahedralMesh, options: SolidOptions, scale: float = 1.0
         except ValueError as error:
             raise PartFileError(mesh.source, str(error)) from error
         stiffness, mass = stiffness + k, mass + m
-    nodes = np.arange(len(points))
+    nodes, skin = np.arange(len(points)), _skin(mesh)
     return FiniteElementModel(
         stiffness=stiffness,
         mass=mass,
         coordinates=points,
-        node_ids=mesh.labels,
         dofs=np.column_stack([np.repeat(nodes, 3), np.tile(np.arange(3), len(points))]),
         node_sets={name: np.unique(cells) for name, cells in mesh.groups.items()},
         set_weights={
@@ -96,9 +95,17 @@ def solid_model(mesh: TetrahedralMesh, options: SolidOptions, scale: float = 1.0
             for name, cells in mesh.groups.items()
             if name in mesh.surfaces
         },
-        triangles=outer_faces(mesh.elements),
+        areas=face_areas(points, skin),
+        triangles=skin[:, :3],
         provenance={"elements": f"{len(mesh.elements)} tetrahedra of {mesh.elements.shape[1]} nodes"},
     )
+
+
+def _skin(mesh: TetrahedralMesh) -> IntArray:
+    try:
+        return outer_faces(mesh.elements)
+    except ValueError as error:
+        raise PartFileError(mesh.source, str(error)) from error
 
 
 def _by_material(mesh: TetrahedralMesh, options: SolidOptions) -> Iterator[tuple[IntArray, Material]]:

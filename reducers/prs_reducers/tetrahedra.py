@@ -10,7 +10,8 @@ from scipy.sparse import coo_array, csr_array
 from prs_model.arrays import FloatArray, IntArray
 from prs_model.errors import MissingExtraError
 
-FACES = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])  # corners of a tetrahedron's faces, seen from outside
+# corners of a tetrahedron's faces, seen from outside, and the mid-side nodes between them (VTK's order)
+FACES = np.array([[0, 2, 1, 6, 5, 4], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [0, 3, 2, 7, 9, 6]])
 CHUNK = 4000  # elements at a time, to bound memory
 
 
@@ -73,10 +74,19 @@ def element_mass(corners: FloatArray, material: Material, order: int = 6) -> Flo
 
 
 def outer_faces(elements: IntArray) -> IntArray:
-    """(t, 3) corner nodes of the faces that only one element has, outward."""
-    faces = elements[:, :4][:, FACES].reshape(-1, 3)
-    _, first, count = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
-    return np.asarray(faces[first[count == 1]])
+    """(t, 3) or (t, 6) nodes of the faces that only one element (e, 4 or 10) has, outward, corners first.
+
+    Raises ValueError when more than two elements share a face.
+    """
+    width = 6 if elements.shape[1] == 10 else 3
+    faces = elements[:, FACES[:, :width]].reshape(-1, width)
+    _, first, count = np.unique(np.sort(faces[:, :3], axis=1), axis=0, return_index=True, return_counts=True)
+    if np.any(count > 2):
+        raise ValueError(
+            f"{np.count_nonzero(count > 2)} faces belong to more than two elements: some are in the file twice, "
+            "as when overlapping volumes are meshed; keep one of each"
+        )
+    return np.asarray(faces[np.sort(first[count == 1])])
 
 
 def face_areas(points: FloatArray, faces: IntArray) -> FloatArray:

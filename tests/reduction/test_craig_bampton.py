@@ -17,6 +17,7 @@ from prs_model.reduction.recipe import Settings
 from tests.meshes import box, steel
 
 SIZE = (0.4, 0.1, 0.08)
+CORNER = {"box": {"x": (0.0, 0.0), "y": (0.0, 0.0), "z": (0.0, 0.0)}}
 
 
 @pytest.fixture(scope="module")
@@ -163,9 +164,16 @@ def test_a_grounded_part_is_held(model):
     ("interfaces", "modes", "words"),
     [
         ({}, 3, "has no interfaces"),
-        ({"a": {"set": "x0"}, "b": {"set": "y0"}}, 3, "interfaces a and b share the nodes 1, .*averaged"),
+        ({"a": {"set": "x0"}, "b": {"set": "y0"}}, 3, r"a and b share \d+ nodes, the first at \(0, 0, 0\) m"),
         ({"a": {"set": "x0", "box": {"y": (0.0, 0.0)}}}, 3, "interface a: its .* nodes lie on one line"),
-        ({"a": {"nodes": (1,), "coupling": "averaged"}}, 3, "interface a: its 1 nodes lie on one line"),
+        ({"a": CORNER | {"coupling": "averaged"}}, 3, "interface a: its 1 nodes lie on one line"),
+        (
+            {"a": {"set": "x0"}, "b": {"set": "x0", "box": {"y": (0.0, 0.05)}, "coupling": "averaged"}},
+            3,
+            "interface b is averaged over nodes that a moves already",
+        ),
+        ({name: {"set": "x0", "coupling": "averaged"} for name in "ab"}, 3, "interface a is averaged over .*repeats b"),
+        ({"a": {"nodes": (1,)}}, 3, "interfaces.a.nodes: its nodes have no labels .*name a set, a box or a cylinder"),
         ({"a": {"set": "x0"}}, 5000, "too few for 5000 modes"),
         ({"a": {"node": 3}}, 3, "interfaces.a.node: only parts that are already reduced"),
         ({"a": {"set": "x0", "members": ({"name": "m", "set": "x1"},)}}, 3, "in the interface or in its members"),
@@ -183,13 +191,36 @@ def test_a_part_in_two_pieces_is_noticed(model):
     double = replace(
         mesh,
         points=apart,
-        labels=np.arange(1, len(apart) + 1),
         elements=np.concatenate([mesh.elements, mesh.elements + len(mesh.points)]),
     )
-    for coupling in ("rigid", "averaged"):
-        ends = {"end": Interface(set="x1", coupling=coupling)}
+    model = steel(double)
+    one, other = ({"set": "all", "box": {"x": (0.0, 0.0), "y": (low, low + 0.1)}} for low in (0.0, 1.0))
+    far = one | {"box": {"x": (0.4, 0.4), "y": (0.0, 0.1)}}
+    sets = {**model.node_sets, "all": np.arange(len(model.coordinates))}
+    model = replace(model, node_sets=sets)
+    for ends in (
+        {"end": {"set": "x1"}},
+        {"end": {"set": "x1", "coupling": "averaged"}},
+        {"one": one, "other": other},
+        {"one": one, "other": other, "far": far},
+    ):
+        interfaces = {name: Interface.model_validate(each) for name, each in ends.items()}
         with pytest.raises(prs.PhysicsError, match=r"found 2, allowed 1; .*share their nodes"):
-            reduce_model(steel(double), ends, Settings("rigid", "joint", 2))
+            reduce_model(model, interfaces, Settings("rigid", "joint", 2))
+
+
+def test_pieces_that_a_rigid_interface_joins_are_one_part():
+    mesh = box(SIZE, (3, 1, 1))
+    apart = replace(
+        mesh,
+        points=np.concatenate([mesh.points, mesh.points + np.array([0.0, 1.0, 0.0])]),
+        elements=np.concatenate([mesh.elements, mesh.elements + len(mesh.points)]),
+    )
+    model = steel(apart)
+    across = Interface.model_validate({"box": {"x": (0.0, 0.0)}})
+    element = reduce_model(model, {"across": across}, Settings("rigid", "joint", 2))
+    element.check()
+    assert element.mass_properties().mass == pytest.approx(model.mass_properties().mass)
 
 
 def test_members_are_tied_together_or_one_by_one(model):
@@ -208,3 +239,26 @@ def test_members_are_tied_together_or_one_by_one(model):
     assert apart.positions == pytest.approx(np.array([[0.1, 0.0, 0.08], [0.2, 0.0875, 0.08]]), abs=0.01)
     assert apart.labels[:2] == ("rail.left.ux", "rail.left.uy")
     assert apart.labels[-1] == "mode 1"
+
+
+def test_members_named_in_different_ways_weigh_by_their_areas(model):
+    """Half the end by its set, half by a box round it: the centre is the end's, to a row of nodes."""
+    halves = (
+        {"name": "low", "set": "x0", "box": {"y": (0.0, 0.049)}},
+        {"name": "high", "box": {"x": (0.0, 0.0), "y": (0.051, 0.1)}},
+    )
+    for members in (halves, halves[::-1]):
+        end = Interface.model_validate({"members": members})
+        element = reduce_model(model, {"end": end}, Settings("averaged", "joint", 0))
+        assert element.positions[0] == pytest.approx([0.0, 0.05, 0.04], abs=0.01)
+
+
+def test_without_areas_all_nodes_weigh_the_same(model):
+    bare = replace(model, areas=None)
+    halves = (
+        {"name": "low", "set": "x0", "box": {"y": (0.0, 0.049)}},
+        {"name": "high", "box": {"x": (0.0, 0.0), "y": (0.051, 0.1)}},
+    )
+    end = Interface.model_validate({"members": halves})
+    element = reduce_model(bare, {"end": end}, Settings("averaged", "joint", 0))
+    assert element.positions[0] == pytest.approx([0.0, 0.05, 0.04], abs=0.001)

@@ -31,9 +31,15 @@ def swapped(matrix: np.ndarray) -> np.ndarray:
     return matrix[np.ix_(order, order)]
 
 
+def rigid_part(element: prs.SuperElement, i: int, j: int) -> np.ndarray:
+    """A mass matrix whose rigid-body mass is one in entries (i, j) and (j, i) and zero elsewhere."""
+    dual = np.linalg.pinv(element.rigid_body_modes())
+    return np.outer(dual[i], dual[j]) + np.outer(dual[j], dual[i])
+
+
 def test_a_sound_part_passes_and_says_so(element):
     report = element.check()
-    assert len(report.checks) == 9
+    assert len(report.checks) == 10
     assert "three equal translational masses" in str(report)
     assert report.subject == element.name
 
@@ -52,6 +58,8 @@ def test_a_sound_part_passes_and_says_so(element):
         (lambda e: {"mass": with_entry(e.mass, 12, 12, 1.2)}, "modal block is as promised"),
         (lambda e: {"mass": np.full_like(e.mass, np.nan)}, "numbers that are not finite"),
         (lambda e: {"motions": np.concatenate([e.motions[:1], e.motions[:1]])}, "nodes follow a rigid motion"),
+        (lambda e: {"mass": e.mass + 0.2 * rigid_part(e, 0, 3)}, "rigid mass is that of a body"),
+        (lambda e: {"mass": e.mass + 20.0 * rigid_part(e, 5, 5)}, "rigid mass is that of a body"),
         (lambda e: {"grounded": True}, "rigid motion is held"),
     ],
 )
@@ -69,6 +77,26 @@ def test_massless_and_inertialess_parts_are_sound():
     massless = replace(point, mass=np.zeros((6, 6)))
     assert massless.mass_properties().mass == 0.0
     massless.check()
+
+
+def test_round_off_of_a_statically_determinate_part_is_none():
+    """A free part of one node has no stiffness; what another program has written of it may be round-off."""
+    model = steel(box((0.4, 0.1, 0.08), (5, 2, 1)))
+    for coupling in ("rigid", "averaged"):
+        for modes in (0, 3):
+            element = reduce_model(model, {"a": Interface(set="x0")}, Settings(coupling, "joint", modes))
+            assert not element.stiffness[:6].any()
+            element.check()
+            noise = np.random.default_rng(0).standard_normal((element.size, element.size))
+            replace(element, stiffness=element.stiffness + 1e-5 * (noise + noise.T), provenance={}).check()
+
+
+def test_one_clamped_node_does_not_hold_a_part():
+    model = steel(box((0.4, 0.1, 0.08), (5, 2, 1)))
+    model = replace(model, node_sets={**model.node_sets, "corner": model.node_sets["x0"][:1]}).clamp(["corner"])
+    element = reduce_model(model, {"a": Interface(set="x1")}, Settings("rigid", "joint", 2), grounded=True)
+    with pytest.raises(prs.PhysicsError, match="3 of 6 rigid motions cost no energy: clamp a node set"):
+        element.check()
 
 
 def test_shapes_that_do_not_fit_are_refused(element):

@@ -92,7 +92,7 @@ def rewritten(path: Path, **changes: object) -> None:
         (lambda path: rewritten(path, mass=np.ones((1, 3, 3))), "mass has shape"),
         (lambda path: rewritten(path, mass=np.full((1, 14, 14), np.nan)), "not finite numbers"),
         (lambda path: rewritten(path, nodes=["a"]), "positions has shape"),
-        (lambda path: rewritten(path, version=99), "format version 99, this program reads 1"),
+        (lambda path: rewritten(path, version=99), "format version 99, this program reads 2"),
         (lambda path: rewritten(path, format="something"), "is 'something', expected"),
     ],
 )

@@ -13,6 +13,7 @@ import sys
 import time
 from collections.abc import Iterable, Sequence
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from prs_model import plugins
 from prs_model.description import MachineDescription, load_description
@@ -21,6 +22,7 @@ from prs_model.description.units import Units
 from prs_model.errors import PrsError
 from prs_model.finite_elements.mass import MassProperties
 from prs_model.reduction import build_part
+from prs_model.reduction.storage import whole
 
 from .parts import PARTS
 
@@ -55,16 +57,23 @@ def _mesh(stem: str, source: Path, size: float) -> None:
 
 
 def _reduce(stem: str, name: str, description: MachineDescription) -> None:
-    """Build the part anew, which stores it in the place of what the store held of it."""
+    """Build the part anew in a store of its own, then put it in the place of what the store held of it."""
     start = time.perf_counter()
     reduction, folder = description.file.reduction, description.folder
     store = folder / (reduction.store or "reduced")
-    for path in store.glob(f"{stem}-*.npz"):
+    store.mkdir(exist_ok=True)
+    with TemporaryDirectory(dir=store, prefix=".new-") as fresh:
+        build_part(name, description.bodies[name], reduction.model_copy(update={"store": fresh}), folder, stem=stem)
+        made = list(Path(fresh).glob("*.npz"))
+        if not made:
+            raise PrsError(f"{stem}: the reduced part could not be stored in {store}")
+        old = set(store.glob(f"{stem}-*.npz")) - {store / path.name for path in made}
+        for path in made:
+            path = path.replace(store / path.name)
+            figures = stem, path.name, path.stat().st_size / 1e6, time.perf_counter() - start
+            logger.info("%s: %s, %.2f MB, reduced in %.1f s", *figures)
+    for path in old:
         path.unlink()
-    build_part(name, description.bodies[name], reduction, folder, stem=stem)
-    for path in store.glob(f"{stem}-*.npz"):
-        figures = stem, path.name, path.stat().st_size / 1e6, time.perf_counter() - start
-        logger.info("%s: %s, %.2f MB, reduced in %.1f s", *figures)
 
 
 def _mass_properties(stem: str, source: Path, body: Body) -> MassProperties:
@@ -78,13 +87,14 @@ def _mass_properties(stem: str, source: Path, body: Body) -> MassProperties:
 
 def write_inertia(urdf: Path, links: Sequence[str], inertia: MassProperties) -> None:
     """Replace the <inertial> elements of these links, and nothing else in the file."""
-    text = urdf.read_text()
+    text = urdf.read_text(encoding="utf-8")
     for link in links:
         pattern = rf'(<link name="{re.escape(link)}">\s*)<inertial>.*?</inertial>'
         text, count = re.subn(pattern, lambda match: match[1] + _inertial(inertia), text, count=1, flags=re.DOTALL)
         if count != 1:
             raise PrsError(f"{urdf.name}: link {link} has no <inertial> element to write to")
-    urdf.write_text(text)
+    with whole(urdf) as file:
+        file.write(text.encode())
 
 
 def _inertial(inertia: MassProperties) -> str:

@@ -14,11 +14,10 @@ from scipy.spatial import cKDTree
 
 from prs_model.arrays import BoolArray, FloatArray, IntArray
 from prs_model.errors import PrsError
+from prs_reducers.tetrahedra import outer_faces
 
 Where = Callable[[FloatArray], BoolArray]
 
-# corners of the four faces of a tetrahedron, outward, and the mid-side nodes between them (VTK order)
-_FACES = np.array([[0, 2, 1, 6, 5, 4], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [0, 3, 2, 7, 9, 6]])
 _EDGES = np.array([[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]])  # whose middles are nodes 4 .. 9
 _TURNED_OVER = [1, 0, 2, 3, 4, 6, 5, 8, 7, 9]  # the same tetrahedron with its first two corners exchanged
 
@@ -36,15 +35,9 @@ class SolidMesh:
         a, b, c, d = (self.points[self.tets[:, i]] for i in range(4))
         return float(np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a).sum() / 6)
 
-    def outer_facets(self) -> IntArray:
-        """Facets (k, 6) that belong to one tetrahedron only."""
-        facets = self.tets[:, _FACES].reshape(-1, 6)
-        _, first, count = np.unique(np.sort(facets[:, :3], axis=1), axis=0, return_index=True, return_counts=True)
-        return np.asarray(facets[np.sort(first[count == 1])])
-
     def named(self, surfaces: Mapping[str, Where]) -> SolidMesh:
         """The same mesh with its surfaces: the outer facets all of whose nodes are where each test says."""
-        facets = self.outer_facets()
+        facets = outer_faces(self.tets)
         found = {name: facets[where(self.points)[facets].all(axis=1)] for name, where in surfaces.items()}
         empty = [name for name, some in found.items() if not len(some)]
         if empty:
