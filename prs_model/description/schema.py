@@ -119,8 +119,9 @@ class Travel(Section):
 
     `along` is the direction of travel in the body frame. Stations are values of the joint. With ``reduced`` the body is
     reduced once per station with its contact there and its matrices are splined in between; with ``stations`` every
-    station keeps its own node and the contact is read between them. `at`, boxes and cylinders of the interface describe
-    the contact at joint value zero and move along with it.
+    station keeps its own node and the contact is read between them. That costs six coordinates a station, and wants
+    averaged coupling: rigid contacts at all stations at once stiffen the whole part, wherever the contact is. `at`,
+    boxes and cylinders of the interface describe the contact at joint value zero and move along with it.
     """
 
     joint: str

@@ -6,6 +6,7 @@ give exact statics of the tied part, and the fixed-interface modes of the part w
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -21,6 +22,10 @@ from ..finite_elements import FiniteElementModel
 from ..finite_elements.rigid_motion import transfer
 from .constrained import ConstrainedSolve, constrained_solver
 from .coupling import Tie, averaging_matrix, check_ties, rigid_rows
+
+PAIR = 1e-4  # frequencies this close together (relative) belong to one symmetry
+
+logger = logging.getLogger("prs_model")
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,22 +104,33 @@ def response(part: HeldPart, loads: FloatArray) -> FloatArray:
 
 
 def fixed_interface_modes(part: HeldPart, n_modes: int) -> FloatArray:
-    """(n, n_modes): lowest modes with all condensation nodes held, by shift-invert about zero; signs are fixed."""
+    """(n, n_modes): lowest modes with all condensation nodes held, by shift-invert about zero; signs are fixed.
+
+    One more is computed, to warn when the last one kept is half of a pair.
+    """
     model, n, m = part.model, len(part.interior), part.constraints.shape[0]
     if n_modes > n - m - 1:
         raise PartFileError(model.source, f"found {n - m} inner DOFs, too few for {n_modes} modes")
-    shapes = np.zeros((model.size, n_modes))
     if n_modes == 0:
-        return shapes
+        return np.zeros((model.size, 0))
+    count = min(n_modes + 1, n - m - 1)
+    shapes = np.zeros((model.size, count))
     inner, inner_mass = (csr_array(each[part.interior][:, part.interior]) for each in (model.stiffness, model.mass))
     held = np.zeros((m, 1))
     inverse = LinearOperator((n, n), matvec=lambda b: part.solve(b.reshape(-1, 1), held).ravel(), dtype=float)
     start = np.random.default_rng(0).standard_normal(n)
     try:
-        shapes[part.interior] = eigsh(inner, n_modes, M=inner_mass, sigma=0.0, OPinv=inverse, v0=start)[1]
+        shapes[part.interior] = eigsh(inner, count, M=inner_mass, sigma=0.0, OPinv=inverse, v0=start)[1]
     except ArpackError as error:
         raise PartFileError(model.source, f"its fixed-interface modes were not found ({error})") from error
-    return _normalised(model, shapes)
+    shapes = _normalised(model, shapes)
+    last = np.einsum("ij,ij->j", shapes, model.stiffness @ shapes)[n_modes - 1 :]
+    if len(last) == 2 and last[1] < last[0] * (1.0 + PAIR) ** 2:
+        logger.warning(
+            "%s: its modes %d and %d are a pair, of which one would be kept; keep one mode more or less",
+            *(model.name, n_modes, n_modes + 1),
+        )
+    return shapes[:, :n_modes]
 
 
 def _solver(model: FiniteElementModel, interior: IntArray, constraints: csr_array, held: bool) -> ConstrainedSolve:

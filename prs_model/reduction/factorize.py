@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import logging
+import weakref
 from collections.abc import Callable
-from importlib.util import find_spec
+from typing import Any
 
 import numpy as np
 from scipy.sparse import csc_array, csr_array, triu
@@ -14,8 +14,6 @@ from ..arrays import FloatArray
 
 Solve = Callable[[FloatArray], FloatArray]
 
-logger = logging.getLogger("prs_model")
-
 
 def factorize(matrix: csr_array) -> Solve:
     """A function b -> A^-1 b for symmetric positive definite A (n, n); b is (n,) or (n, c).
@@ -24,9 +22,11 @@ def factorize(matrix: csr_array) -> Solve:
     and 37 million entries for 77,000 DOFs; COLAMD takes 40 s and 89 million).
     Raises numpy.linalg.LinAlgError when A is singular.
     """
-    if find_spec("pypardiso") is not None:
-        return _pardiso(matrix)
-    return _superlu(matrix)
+    try:
+        from pypardiso import PyPardisoSolver
+    except (ImportError, OSError):  # not installed, or without the MKL it needs
+        return _superlu(matrix)
+    return _pardiso(matrix, PyPardisoSolver(mtype=2))
 
 
 def _superlu(matrix: csr_array) -> Solve:
@@ -42,14 +42,17 @@ def _superlu(matrix: csr_array) -> Solve:
     return lambda b: np.asarray(factor.solve(b))
 
 
-def _pardiso(matrix: csr_array) -> Solve:
-    from pypardiso import PyPardisoSolver
+def _pardiso(matrix: csr_array, solver: Any) -> Solve:
     from pypardiso.pardiso_wrapper import PyPardisoError
 
-    solver = PyPardisoSolver(mtype=2)
     upper = csr_array(triu(matrix, format="csr"))
     try:
         solver.factorize(upper)
     except PyPardisoError as error:
         raise np.linalg.LinAlgError(str(error)) from error
-    return lambda b: np.asarray(solver.solve(upper, b)) if b.size else np.zeros_like(b)
+
+    def solve(b: FloatArray) -> FloatArray:
+        return np.asarray(solver.solve(upper, b)) if b.size else np.zeros_like(b)
+
+    weakref.finalize(solve, solver.free_memory, True)  # MKL does not free a factorization by itself
+    return solve

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Mapping
 from dataclasses import replace
 
@@ -19,6 +20,8 @@ from .interfaces import interface_ties
 from .recipe import Settings
 from .super_element import SuperElement
 from .travelling import TravellingElement
+
+logger = logging.getLogger("prs_model")
 
 
 def travelling_interface(interfaces: Mapping[str, Interface], source: str) -> tuple[str, Travel] | None:
@@ -47,6 +50,7 @@ def reduce_travelling(
     stations = np.array(travel.stations, dtype=float)
     shifts = np.outer(stations, direction / np.linalg.norm(direction))
     ties, moving = _ties_by_station(model, interfaces, settings, name, shifts)
+    _warn_of_gaps(model, ties[0], moving, shifts)
     if travel.method == "stations":
         nodes = node_per_station(model, ties, moving, settings.modes, grounded)
         return TravellingElement(travel.joint, stations, nodes)
@@ -56,6 +60,19 @@ def reduce_travelling(
         )
     elements, products = reduction_per_station(model, ties, np.array(moving), settings.modes, grounded)
     return TravellingElement(travel.joint, stations, elements, products)
+
+
+def _warn_of_gaps(model: FiniteElementModel, ties: list[Tie], moving: list[bool], shifts: FloatArray) -> None:
+    """A rigid contact that steps over more than its own length leaves stretches of the part that it never touches."""
+    steps = np.linalg.norm(np.diff(shifts, axis=0), axis=1)
+    direction = (shifts[-1] - shifts[0]) / np.linalg.norm(shifts[-1] - shifts[0])
+    for tie, moves in zip(ties, moving, strict=True):
+        length = float(np.ptp(model.coordinates[tie.indices] @ direction))
+        if moves and tie.coupling == "rigid" and steps.max() > length * (1.0 + 1e-6):
+            logger.warning(
+                "%s: stations of %s are up to %.4g m apart, its rigid contact is %.4g m long; use closer stations",
+                *(model.name, tie.node, steps.max(), length),
+            )
 
 
 def _ties_by_station(

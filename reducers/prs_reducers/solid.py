@@ -8,14 +8,14 @@ from difflib import get_close_matches
 from typing import ClassVar
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field, ValidationInfo, model_validator
 from pydantic_core import PydanticCustomError
 from scipy.sparse import csr_array
 
 from prs_model.arrays import IntArray
 from prs_model.description.quantity import Density, Number, Pressure
 from prs_model.description.schema import Section
-from prs_model.description.units import Dimension
+from prs_model.description.units import SI, Dimension, Units
 from prs_model.errors import PartFileError
 from prs_model.finite_elements import FiniteElementModel
 from prs_model.plugins import PartRequest, Reducer
@@ -26,6 +26,14 @@ from .tetrahedra import Material, assemble, face_areas, outer_faces
 logger = logging.getLogger("prs_model")
 
 
+# lowest and highest value that a solid has, and steel's, in SI
+PLAUSIBLE = {
+    "E": (Dimension(force=1, length=-2), 1e6, 2e12, 2.1e11),
+    "density": (Dimension(mass=1, length=-3), 10.0, 3e4, 7850.0),
+}
+SIZES = (1e-3, 1e2)  # m
+
+
 class MaterialOptions(Section):
     """Isotropic elasticity: Young's modulus, Poisson's ratio, density."""
 
@@ -34,7 +42,17 @@ class MaterialOptions(Section):
     density: Density
 
     @model_validator(mode="after")
-    def _stable(self) -> MaterialOptions:
+    def _of_a_solid(self, info: ValidationInfo) -> MaterialOptions:
+        units: Units = (info.context or {}).get("units", SI)
+        for name, (dimension, low, high, steel) in PLAUSIBLE.items():
+            value, factor = float(getattr(self, name)), dimension.factor(units)
+            if not low <= value <= high:
+                unit, found = dimension.label(units), f"{value:.4g} {dimension.label(SI)}"
+                raise PydanticCustomError(
+                    name,
+                    f"found {name} = {value / factor:.4g} {unit} ({found}), which no solid has; "
+                    f"steel is {steel / factor:.4g} {unit}: check the units",
+                )
         if not -1.0 < self.nu < 0.5:
             raise PydanticCustomError("nu", f"found nu = {self.nu:g}, expected more than -1 and less than 0.5")
         return self
@@ -65,7 +83,12 @@ class SolidReducer(Reducer):
             raise PartFileError(
                 part.source, f"bodies.{part.name}.units: found nothing, expected the mesh's, such as 'mm-N-tonne-s'"
             )
-        return solid_model(read_mesh(part.source), part.options, Dimension(length=1).factor(part.units))
+        model = solid_model(read_mesh(part.source), part.options, Dimension(length=1).factor(part.units))
+        size, mass = float(np.ptp(model.coordinates, axis=0).max()), model.mass_properties().mass
+        logger.info("%s: %.4g kg, %.4g m long", part.name, mass, size)
+        if not SIZES[0] <= size <= SIZES[1]:
+            logger.warning("%s: is %.4g m long; are they those of the mesh?", part.name, size)
+        return model
 
 
 def solid_model(mesh: TetrahedralMesh, options: SolidOptions, scale: float = 1.0) -> FiniteElementModel:

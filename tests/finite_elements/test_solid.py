@@ -8,9 +8,11 @@ from dataclasses import replace
 import meshio
 import numpy as np
 import pytest
+from pydantic import ValidationError
 from scipy.sparse.linalg import eigsh
 
 import prs_model as prs
+from prs_model.description.units import Units
 from prs_model.finite_elements import FiniteElementModel
 from prs_model.reduction.coupling import Tie
 from prs_model.reduction.craig_bampton import craig_bampton
@@ -161,6 +163,19 @@ def test_materials_by_volume():
     ):
         with pytest.raises(prs.PartFileError, match=words):
             solid_model(mesh, SolidOptions.model_validate({"materials": materials}))
+
+
+def test_forgotten_units_are_noticed(tmp_path, caplog):
+    path = write(box((0.2, 0.1, 0.1), (2, 1, 1)), tmp_path / "block.msh")
+    ends = {"interfaces": {"end": {"set": "x0"}}, "modes": 0}
+    tonnes = {"units": Units(length="mm", mass="kg")}
+    with pytest.raises(ValidationError, match=r"density = 7.85e-09 kg/mm\^3 \(7.85 kg/m\^3\).* 7.85e-06 kg/mm\^3"):
+        SolidOptions.model_validate({"material": {"E": 2.1e5, "nu": 0.3, "density": 7.85e-9}}, context=tonnes)
+    with pytest.raises(prs.DescriptionError, match=r"found E = 2.1e\+05 N/m\^2"):
+        prs.reduce("solid", path, units="m-N-kg-s", material=STEEL | {"E": 2.1e5}, **ends)
+    with caplog.at_level(logging.WARNING, logger="prs_model"):
+        prs.reduce("solid", path, units="mm-N-tonne-s", material=STEEL, **ends)
+    assert "is 0.0002 m long; are they those of the mesh?" in caplog.text
 
 
 def test_four_node_tetrahedra_are_taken_with_a_note(caplog):

@@ -185,15 +185,8 @@ def test_interfaces_that_cannot_hold_are_explained(model, interfaces, modes, wor
         reduce_model(model, sections, Settings("rigid", "joint", modes))
 
 
-def test_a_part_in_two_pieces_is_noticed(model):
-    mesh = box(SIZE, (3, 1, 1))
-    apart = np.concatenate([mesh.points, mesh.points + np.array([0.0, 1.0, 0.0])])
-    double = replace(
-        mesh,
-        points=apart,
-        elements=np.concatenate([mesh.elements, mesh.elements + len(mesh.points)]),
-    )
-    model = steel(double)
+def test_a_part_in_two_pieces_is_noticed():
+    model = twins()
     one, other = ({"set": "all", "box": {"x": (0.0, 0.0), "y": (low, low + 0.1)}} for low in (0.0, 1.0))
     far = one | {"box": {"x": (0.4, 0.4), "y": (0.0, 0.1)}}
     sets = {**model.node_sets, "all": np.arange(len(model.coordinates))}
@@ -209,18 +202,30 @@ def test_a_part_in_two_pieces_is_noticed(model):
             reduce_model(model, interfaces, Settings("rigid", "joint", 2))
 
 
-def test_pieces_that_a_rigid_interface_joins_are_one_part():
+def twins() -> FiniteElementModel:
+    """Two equal boxes that share no node."""
     mesh = box(SIZE, (3, 1, 1))
-    apart = replace(
-        mesh,
-        points=np.concatenate([mesh.points, mesh.points + np.array([0.0, 1.0, 0.0])]),
-        elements=np.concatenate([mesh.elements, mesh.elements + len(mesh.points)]),
+    points = np.concatenate([mesh.points, mesh.points + np.array([0.0, 1.0, 0.0])])
+    return steel(
+        replace(mesh, points=points, elements=np.concatenate([mesh.elements, mesh.elements + len(mesh.points)]))
     )
-    model = steel(apart)
+
+
+def test_pieces_that_a_rigid_interface_joins_are_one_part():
+    model = twins()
     across = Interface.model_validate({"box": {"x": (0.0, 0.0)}})
     element = reduce_model(model, {"across": across}, Settings("rigid", "joint", 2))
     element.check()
     assert element.mass_properties().mass == pytest.approx(model.mass_properties().mass)
+
+
+def test_half_a_pair_of_modes_is_noted(caplog):
+    across = {"across": Interface.model_validate({"box": {"x": (0.0, 0.0)}})}
+    with caplog.at_level("WARNING", logger="prs_model"):
+        reduce_model(twins(), across, Settings("rigid", "joint", 2))
+        assert not caplog.text
+        reduce_model(twins(), across, Settings("rigid", "joint", 1))
+    assert "its modes 1 and 2 are a pair" in caplog.text
 
 
 def test_members_are_tied_together_or_one_by_one(model):

@@ -10,6 +10,7 @@ import pytest
 import prs_model as prs
 from prs_model.description.schema import Body, ReductionDefaults
 from prs_model.reduction import build_part
+from prs_reducers.solid import SolidReducer
 from tests.meshes import STEEL, box, write
 
 STEEL_MM = {"units": "mm-N-tonne-s", "material": STEEL}
@@ -108,6 +109,39 @@ def test_what_is_missing_is_explained(folder):
         file.touch()
     with pytest.raises(prs.PartFileError, match=r"python -m machines.head.rebuild"):
         build_part("rod", body(modes=5), DEFAULTS, package)
+
+
+def test_what_else_lies_in_the_store_does_not_hide_what_is_missing(folder):
+    element = build_part("rod", body(), DEFAULTS, folder)
+    (folder / "reduced" / "rod-old.npz").write_bytes(b"junk")
+    replace(element, provenance={"recipe": "no recipe"}).save(folder / "reduced" / "rod-x.npz")
+    (folder / "rod.msh").unlink()
+    with pytest.raises(prs.PartFileError, match=r"'rod-\w{12}.npz' there differs in modes: 5, stored 2; put the part"):
+        build_part("rod", body(modes=5), DEFAULTS, folder)
+
+
+def test_a_stored_element_of_another_recipe_is_refused(folder):
+    build_part("rod", body(), DEFAULTS, folder)
+    (first,) = stored(folder)
+    build_part("rod", body(modes=4), DEFAULTS, folder)
+    (second,) = set(stored(folder)) - {first}
+    shutil.copy(folder / "reduced" / first, folder / "reduced" / second)
+    with pytest.raises(prs.PartFileError, match=r"another recipe than its name says \(modes: 4, stored 2\); delete it"):
+        build_part("rod", body(modes=4), DEFAULTS, folder)
+
+
+def test_a_stored_element_deleted_meanwhile_is_written_again(folder):
+    for _ in range(3):
+        build_part("rod", body(), DEFAULTS, folder)
+        (name,) = stored(folder)
+        (folder / "reduced" / name).unlink()
+
+
+def test_a_newer_reducer_makes_its_parts_again(folder, monkeypatch):
+    build_part("rod", body(), DEFAULTS, folder)
+    monkeypatch.setattr(SolidReducer, "version", 2)
+    build_part("rod", body(), DEFAULTS, folder)
+    assert len(stored(folder)) == 2
 
 
 def test_a_damaged_or_tampered_store_is_noticed(folder):

@@ -1,7 +1,10 @@
 """Stored super-elements: exact round trip, and clear words for files that are damaged or something else."""
 
+import io
 import json
 import pickle
+import zipfile
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -64,6 +67,14 @@ def test_travelling_round_trip_is_exact(tmp_path):
         prs.SuperElement.load(tmp_path / "rail.npz")
 
 
+def huge(path: Path) -> None:
+    """An array that says it has 1e20 entries."""
+    draft = io.BytesIO()
+    np.lib.format.write_array_header_1_0(draft, {"descr": "<f8", "fortran_order": False, "shape": (10**20,)})
+    with zipfile.ZipFile(path, "w") as file:
+        file.writestr("stiffness.npy", draft.getvalue())
+
+
 def rewritten(path: Path, **changes: object) -> None:
     """Change arrays or header entries of a stored file; None leaves an array out."""
     with np.load(path) as file:
@@ -94,6 +105,18 @@ def rewritten(path: Path, **changes: object) -> None:
         (lambda path: rewritten(path, nodes=["a"]), "positions has shape"),
         (lambda path: rewritten(path, version=99), "format version 99, this program reads 2"),
         (lambda path: rewritten(path, format="something"), "is 'something', expected"),
+        (lambda path: path.write_text("hello"), "is no .npz file"),
+        (lambda path: rewritten(path, n_modes=2.5), "n_modes"),
+        (lambda path: rewritten(path, n_modes=True), "n_modes"),
+        (lambda path: rewritten(path, grounded=0), "grounded"),
+        (lambda path: rewritten(path, nodes="ab"), "nodes"),
+        (lambda path: rewritten(path, labels=list(range(14))), "labels"),
+        (lambda path: rewritten(path, provenance=None), "provenance"),
+        (lambda path: rewritten(path, stations=np.array([0.0, 1.0])), "no joint for its stations"),
+        (lambda path: rewritten(path, triangles=np.array([[0, 1, 100000]])), "triangles are of no point"),
+        (lambda path: rewritten(path, recovery=np.zeros((1, 4, 3, 3))), "recovery has shape"),
+        (lambda path: np.savez(path, header=np.array("[" * 100000)), "damaged"),
+        (lambda path: huge(path), "damaged"),
     ],
 )
 def test_damaged_files_are_named(path, damage, words):
@@ -101,6 +124,15 @@ def test_damaged_files_are_named(path, damage, words):
     with pytest.raises(prs.PartFileError, match=words) as error:
         prs.SuperElement.load(path)
     assert error.value.path == path
+
+
+def test_writers_at_the_same_time_do_not_meet(element, tmp_path):
+    path = tmp_path / "part.npz"
+    with ThreadPoolExecutor(4) as pool:
+        list(pool.map(lambda _: element.save(path), range(12)))
+    assert_same(element, prs.SuperElement.load(path))
+    assert [each.name for each in tmp_path.iterdir()] == ["part.npz"]
+    assert path.stat().st_mode & 0o444 == 0o444
 
 
 def test_a_place_that_cannot_be_written(element, tmp_path):

@@ -98,6 +98,33 @@ def test_both_methods_agree(rail):
     assert one[:3] == pytest.approx(other[:3], rel=5e-3)
 
 
+@pytest.mark.parametrize(
+    ("coupling", "stations", "low", "high"),
+    [("averaged", STATIONS, -0.01, 0.0), ("rigid", (0.1, 0.201, 0.302, 0.403), 0.1, 0.6)],
+)
+def test_the_price_of_method_stations(rail, coupling, stations, low, high):
+    """Midway between stations: within 1 % where averaged; rigid contacts side by side stiffen all of the rail."""
+    element = reduce_travelling(
+        rail, interfaces("stations", coupling, stations=stations), Settings("rigid", "joint", 8)
+    )
+    value = (stations[1] + stations[2]) / 2.0
+    there = interfaces("reduced", coupling)
+    here = {"set": "z1", "box": {"x": (value - 0.05, value + 0.05)}, "coupling": coupling}
+    there["contact"] = Interface.model_validate(here)
+    exact = reduce_model(rail, there, Settings("rigid", "joint", 8))
+    error = loaded_frequencies(element.at(value)) / loaded_frequencies(exact) - 1.0
+    assert low < error.min() <= error.max() < high
+
+
+def test_stations_further_apart_than_a_rigid_contact_is_long_are_noted(rail, caplog):
+    with caplog.at_level("WARNING", logger="prs_model"):
+        reduce_travelling(rail, interfaces("reduced", "rigid"), Settings("rigid", "joint", 0))
+        assert not caplog.text
+        far = interfaces("reduced", "rigid", stations=(0.1, 0.2, 0.35, 0.5))
+        reduce_travelling(rail, far, Settings("rigid", "joint", 0))
+    assert "stations of contact are up to 0.15 m apart, its rigid contact is 0.1 m long" in caplog.text
+
+
 def test_modes_keep_their_order_and_sign_from_station_to_station(rail):
     element = reduce_travelling(rail, interfaces("reduced", "averaged"), Settings("rigid", "joint", 4))
     assert element.nodes == ("left", "contact", "right")
