@@ -155,7 +155,7 @@ def _write(figure: Any, path: Path) -> None:
     with _told(path):
         complete = _temporary(path)
         try:
-            figure.savefig(complete, dpi=130)
+            figure.savefig(complete, dpi=110)
             complete.chmod(0o644)
             complete.replace(path)
         finally:
