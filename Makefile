@@ -19,7 +19,7 @@ check: $(VENV)/.dev
 	$(BIN)/lint-imports
 
 # Rebuilds the meshes and super-elements of head_3prs from its part script (needs Debian's libglu1-mesa and X libraries).
-parts: $(VENV)/.mesh
+parts: $(VENV)/.fem $(VENV)/.mesh
 	$(BIN)/python -m prs_machines.head_3prs.rebuild
 
 # Redraws the pictures of the documentation.
