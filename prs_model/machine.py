@@ -20,11 +20,14 @@ if TYPE_CHECKING:
     from .synthesis import System
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Machine:
     """A parallel kinematic machine as described; immutable. Parts and kinematics are made when first needed."""
 
     description: MachineDescription
+
+    def __repr__(self) -> str:
+        return f"Machine({self.name!r}, {len(self.description.bodies)} bodies, {len(self.description.joints)} joints)"
 
     @property
     def name(self) -> str:
@@ -89,7 +92,7 @@ class Machine:
         return self.assemble(self.configuration(**pose)).modes(count)
 
     def replace(self, changes: Mapping[str, object]) -> Machine:
-        """A new machine with entries of its description changed, such as ``{"bodies.rod.modes": 5}``.
+        """A new machine with entries of its description changed, such as ``{"joints.P.drive.nut": 1.0e5}``.
 
         Paths are those of machine.yaml as written, or of one instance (``bodies.rod_2.modes``); values are in the
         units of the file. Raises DescriptionError as loading does.
@@ -100,12 +103,13 @@ class Machine:
 def load_machine(name_or_path: str | Path) -> Machine:
     """A machine by the name it is installed under, or by the path of a machine.yaml or its folder.
 
-    Raises UnknownNameError listing the known names, or DescriptionError listing everything wrong with the files.
+    Raises UnknownNameError listing the known names, DescriptionError listing everything wrong with the files, or
+    PrsError for a path where nothing is.
     """
     if str(name_or_path) in plugins.list_machines():
         return Machine(load_description(plugins.machine_folder(str(name_or_path))))
     path = Path(name_or_path)
-    if _exists(path):
+    if str(name_or_path) and _exists(path):
         return Machine(load_description(path))
     if len(path.parts) > 1 or path.suffix in {".yaml", ".yml"}:
         expected = "a machine.yaml, its folder, or an installed machine"

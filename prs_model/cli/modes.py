@@ -44,7 +44,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=assignment,
         default=[],
         metavar="PATH=VALUE",
-        help="change an entry of the description, such as bodies.rod.modes=5 (may be repeated)",
+        help="change an entry of the description, such as joints.P.drive.nut=1.0e5 (may be repeated)",
     )
     parser.add_argument("--picture", type=Path, metavar="FILE", help="draw the mode shapes (.png, .svg or .pdf)")
 

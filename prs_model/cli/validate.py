@@ -6,7 +6,6 @@ import argparse
 from typing import TYPE_CHECKING, Any
 
 from ..description import json_schema
-from ..errors import PrsError
 from ..machine import Machine, load_machine
 from ..synthesis import wide_joints
 
@@ -20,8 +19,9 @@ _MOVES = 0.01  # share of the kinetic energy
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The machine, or --schema."""
-    parser.add_argument("machine", nargs="?", help="installed name, machine.yaml or its folder")
-    parser.add_argument("--schema", action="store_true", help="print the JSON schema of machine.yaml for editors")
+    one = parser.add_mutually_exclusive_group(required=True)
+    one.add_argument("machine", nargs="?", help="installed name, machine.yaml or its folder")
+    one.add_argument("--schema", action="store_true", help="print the JSON schema of machine.yaml for editors")
 
 
 def run(options: argparse.Namespace) -> dict[str, Any]:
@@ -29,8 +29,6 @@ def run(options: argparse.Namespace) -> dict[str, Any]:
     if options.schema:
         options.json = True
         return json_schema()
-    if options.machine is None:
-        raise PrsError("name a machine to check, or ask for --schema")
     return _card(load_machine(options.machine))
 
 

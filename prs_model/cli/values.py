@@ -41,7 +41,7 @@ def pose_from(assignments: Sequence[tuple[str, str]], coordinates: Mapping[str, 
 
 
 def settings_from(assignments: Sequence[tuple[str, str]]) -> dict[str, object]:
-    """Changes for Machine.replace from ``bodies.rod.modes=5``, values read as in machine.yaml."""
+    """Changes for Machine.replace from ``joints.P.drive.nut=1.0e5``, values read as in machine.yaml."""
     return {name: parse_value(text) for name, text in assignments}
 
 

@@ -62,6 +62,10 @@ def _check_reducer(subject: Subject, place: Place, body: Body) -> None:
         report(error, plugin.Options, body.options, subject.problems, (*place, "options"))
 
 
+def _may_be_stored(subject: Subject) -> bool:
+    return subject.file.reduction.store is not None or subject.problems.touches(("reduction",))
+
+
 def _check_source(subject: Subject, place: Place, body: Body, needed: bool) -> None:
     if body.source is None:
         if needed:
@@ -71,9 +75,7 @@ def _check_source(subject: Subject, place: Place, body: Body, needed: bool) -> N
     if not needed:
         message = f"found '{body.source}', expected nothing; reducer '{body.reducer}' reads no file: remove 'source'"
         subject.problems.add((*place, "source"), message)
-    elif (
-        "<" not in body.source and subject.file.reduction.store is None and not (subject.folder / body.source).is_file()
-    ):
+    elif "<" not in body.source and not _may_be_stored(subject) and not (subject.folder / body.source).is_file():
         message = f"found '{body.source}', expected a file in {subject.folder}; make it, or correct the name"
         subject.problems.add((*place, "source"), message)
 

@@ -64,6 +64,8 @@ def _message(details: ErrorDetails, root: type[BaseModel], location: Place) -> s
         return f"found {shown(found)}, expected a name or a whole number"
     if kind in _EXPECTED:
         return f"found {shown(found)}, expected {_EXPECTED[kind]}{_advice(kind, found)}"
+    if kind == "greater_than_equal":
+        return f"found {shown(found)}, expected {context['ge']} or more"
     message = details["msg"]
     return message if message.startswith("found ") else f"found {shown(found)}; {message}"
 

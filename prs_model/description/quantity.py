@@ -105,8 +105,9 @@ def _unpack(raw: Any, unit: str) -> tuple[Any, Source | None, str | None]:
 
 
 Number = Annotated[Quantity, _Field(Dimension())]
-Ratio = Annotated[Quantity, _Field(Dimension(), non_negative=True)]
 DampingRatio = Annotated[Quantity, _Field(Dimension(), non_negative=True, below=1.0)]
+Rate = Annotated[Quantity, _Field(Dimension(time=-1), non_negative=True)]
+Duration = Annotated[Quantity, _Field(Dimension(time=1), non_negative=True)]
 Length = Annotated[Quantity, _Field(Dimension(length=1))]
 PositiveLength = Annotated[Quantity, _Field(Dimension(length=1), positive=True)]
 Angle = Annotated[Quantity, _Field(Dimension(angle=1))]

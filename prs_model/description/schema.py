@@ -14,11 +14,12 @@ from .quantity import (
     ComplianceTR,
     ComplianceTT,
     DampingRatio,
+    Duration,
     Force,
     Length,
     Number,
     PositiveLength,
-    Ratio,
+    Rate,
     RotationalCompliance,
     RotationalStiffness,
     Source,
@@ -290,8 +291,8 @@ class Joint(Stage):
 class Rayleigh(Section):
     """C = alpha M + beta K, alpha in 1/s, beta in s."""
 
-    alpha: Ratio
-    beta: Ratio
+    alpha: Rate
+    beta: Duration
 
 
 class Damping(Section):

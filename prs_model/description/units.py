@@ -79,6 +79,7 @@ class Dimension:
     force: int = 0
     mass: int = 0
     angle: int = 0
+    time: int = 0  # always in seconds
 
     def factor(self, units: Units) -> float:
         """What a number in `units` is multiplied with to become SI."""
@@ -96,6 +97,7 @@ class Dimension:
             (units.mass, self.mass),
             (units.length, self.length),
             (units.angle, self.angle),
+            ("s", self.time),
         ]
         above = "*".join(unit if n == 1 else f"{unit}^{n}" for unit, n in parts if n > 0)
         below = "/".join(unit if n == -1 else f"{unit}^{-n}" for unit, n in parts if n < 0)

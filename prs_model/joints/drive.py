@@ -8,11 +8,16 @@ from ..errors import PrsError
 
 
 def drive_compliance(drive: ConstantDrive | BallScrew, value: float) -> float:
-    """Compliance [m/N or rad/(N m)] of a drive when its joint stands at `value` [m or rad]."""
+    """Compliance [m/N or rad/(N m)] of a drive when its joint stands at `value` [m or rad].
+
+    Raises PrsError for a drive without stiffness, or a nut beyond its screw.
+    """
     if isinstance(drive, BallScrew):
         return ball_screw_compliance(drive, value - drive.origin)
     stiffness = drive.stiffness if drive.stiffness is not None else drive.rotational_stiffness
-    return 1.0 / float(stiffness) if stiffness is not None else 0.0
+    if stiffness is None:
+        raise PrsError("a constant drive has neither stiffness nor rotational_stiffness")
+    return 1.0 / float(stiffness)
 
 
 def ball_screw_compliance(screw: BallScrew, stroke: float) -> float:

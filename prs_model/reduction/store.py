@@ -72,7 +72,7 @@ class StoredPart:
     def _remedy(self) -> str:
         machine = self.folder.parent
         if (machine / "rebuild.py").exists():
-            return f"make it with: {rebuild_command(machine)}"
+            return f"make the part file with: {rebuild_command(machine)}"
         return "put the part file there, correct 'source', or go back to the settings it was reduced with"
 
 

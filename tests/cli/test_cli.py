@@ -72,7 +72,7 @@ def test_the_picture_is_written_whole(capsys: pytest.CaptureFixture[str], tmp_pa
         (["modes", "hexapod", "--picture", 300 * "x" + ".png"], "x.png: cannot be written ("),
         (["modes", "hexapod", "--picture", "/proc/modes.png"], "/proc/modes.png: cannot be written ("),
         (["modes", "hexapod", "--picture", "no/such/folder/modes.png"], "cannot be written"),
-        (["validate"], "name a machine"),
+        (["modes", ""], "unknown machine"),
     ],
 )
 def test_wrong_input_is_one_clear_message_and_status_1(
@@ -88,7 +88,16 @@ def test_wrong_input_is_one_clear_message_and_status_1(
 
 
 @pytest.mark.parametrize(
-    "arguments", [[], ["mode"], ["modes"], ["modes", "hexapod", "-n", "0"], ["modes", "hexapod", "--pose", "z"]]
+    "arguments",
+    [
+        [],
+        ["mode"],
+        ["modes"],
+        ["validate"],
+        ["validate", "hexapod", "--schema"],
+        ["modes", "hexapod", "-n", "0"],
+        ["modes", "hexapod", "--pose", "z"],
+    ],
 )
 def test_wrong_usage_is_status_2(capsys: pytest.CaptureFixture[str], arguments: list[str]) -> None:
     assert run(capsys, *arguments)[0] == 2

@@ -105,3 +105,19 @@ def test_entries_of_lists_go_by_number_or_name() -> None:
         DescriptionError, match=r"found '0' in a list, expected one of b1, b2, or a number such as \[0\]"
     ):
         replaced(head, {"joints.R.interfaces.0.stiffness.ux": 1.0e6})
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "words"),
+    [
+        ("reduction.coupling", "stiff", "expected one of rigid, averaged"),
+        ("reduction.modes", -1, "found -1, expected 0 or more"),
+        ("damping", {"rayleigh": {"alpha": 1.0, "beta": -1.0}}, r"expected zero or more \(s\)"),
+    ],
+)
+def test_a_mistake_beside_parts_without_their_meshes_is_told_alone(path: str, value: object, words: str) -> None:
+    """head_3prs ships reduced parts, no meshes: a store that cannot be read must not make every mesh a problem."""
+    head = load_description(Path(__file__).parents[2] / "machines" / "prs_machines" / "head_3prs")
+    with pytest.raises(DescriptionError, match=words) as caught:
+        replaced(head, {path: value})
+    assert len(caught.value.problems) == 1

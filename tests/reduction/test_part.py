@@ -101,7 +101,7 @@ def test_what_is_missing_is_explained(folder):
     with pytest.raises(prs.PartFileError, match=r"differs in modes: 5, stored 2; put the part file there"):
         build_part("rod", body(modes=5), DEFAULTS, folder)
     (folder / "rebuild.py").touch()
-    with pytest.raises(prs.PartFileError, match=r"make it with: python .*rebuild\.py"):
+    with pytest.raises(prs.PartFileError, match=r"make the part file with: python .*rebuild\.py"):
         build_part("rod", body(modes=5), DEFAULTS, folder)
     package = folder / "machines" / "head"
     shutil.copytree(folder / "reduced", package / "reduced")
