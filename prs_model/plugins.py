@@ -6,13 +6,13 @@ import logging
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from difflib import get_close_matches
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
+from .description.problems import closest
 from .description.schema import Body, Section
 from .description.units import Units
 from .errors import PluginError, UnknownNameError, short
@@ -90,8 +90,8 @@ def list_reducers() -> dict[str, str]:
 
 def unknown(what: str, name: str, known: list[str]) -> UnknownNameError:
     """The error for a name that is not among `known`, with a did-you-mean."""
-    close = get_close_matches(name, known, n=1)
-    return UnknownNameError(what, name, known, f"Did you mean '{close[0]}'?" if close else "")
+    close = closest(name, known)
+    return UnknownNameError(what, name, known, f"Did you mean '{close}'?" if close else "")
 
 
 @cache

@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from ..modes import Modes
 
 _log = logging.getLogger(__name__)
-_NAMED_SHARE = 0.1
 _SLACK = 1e-9  # m, rad: rounding of a pose at the edge of the workspace
 
 NAME = "modes"
@@ -98,7 +97,9 @@ def _row(mode: dict[str, Any]) -> tuple[str, str, str, str, str]:
 
 
 def _table(modes: Modes) -> list[dict[str, Any]]:
-    kinetic, strain = modes.kinetic_energy(), modes.strain_energy()
+    from ..modes import shares_by_group
+
+    kinetic, strain, stems = modes.kinetic_energy(), modes.strain_energy(), modes.system.stems
     return [
         {
             "number": k + 1,
@@ -108,21 +109,12 @@ def _table(modes: Modes) -> list[dict[str, Any]]:
             "motion": character.motion,
             "shares": dict(character.shares),
             "output": character.output,
-            "strain_shares": _by_group({name: float(share[k]) for name, share in strain.items()}, modes),
+            "strain_shares": shares_by_group({name: float(share[k]) for name, share in strain.items()}, stems),
             "kinetic_energy": {name: float(share[k]) for name, share in kinetic.items()},
             "strain_energy": {name: float(share[k]) for name, share in strain.items()},
         }
         for k, character in enumerate(modes.characters())
     ]
-
-
-def _by_group(shares: dict[str, float], modes: Modes) -> dict[str, float]:
-    """Shares of 10 % and more of like bodies and joints together, the largest first."""
-    groups: dict[str, float] = {}
-    for name, share in shares.items():
-        stem = modes.system.stems.get(name, name)
-        groups[stem] = groups.get(stem, 0.0) + share
-    return {name: share for name, share in sorted(groups.items(), key=lambda item: -item[1]) if share >= _NAMED_SHARE}
 
 
 def _warn_outside_workspace(machine: Machine, configuration: Configuration) -> None:

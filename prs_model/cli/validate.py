@@ -10,6 +10,7 @@ from ..machine import Machine, load_machine
 from ..synthesis import wide_joints
 
 if TYPE_CHECKING:
+    from ..kinematics import Configuration
     from ..modes import Modes
 
 NAME = "validate"
@@ -48,13 +49,14 @@ def _mass(body: dict[str, Any]) -> str:
 
 
 def _card(machine: Machine) -> dict[str, Any]:
-    system = machine.assemble()
+    configuration = machine.configuration()
+    system = machine.assemble(configuration)
     modes = system.modes(system.size)
     return {
         "machine": machine.name,
         "title": machine.description.file.title,
         "valid": True,
-        "warnings": [*_unheld(machine), *_wide(machine), *_free(modes)],
+        "warnings": [*_unheld(machine), *_wide(machine, configuration), *_free(modes)],
         "coordinates": system.size,
         "first_frequency_hz": float(modes.frequencies[0]),
         "bodies": {
@@ -74,8 +76,8 @@ def _unheld(machine: Machine) -> list[str]:
     return [f"body '{name}' is held by no joint" for name in loose]
 
 
-def _wide(machine: Machine) -> list[str]:
-    gaps = wide_joints(machine.description, machine.parts, machine.joints, machine.configuration())
+def _wide(machine: Machine, configuration: Configuration) -> list[str]:
+    gaps = wide_joints(machine.description, machine.parts, machine.joints, configuration)
     joints = machine.description.joints
     return [
         f"joint '{name}': its ends {' and '.join(joints[name].between)} lie {1e3 * gap:.4g} mm apart; "

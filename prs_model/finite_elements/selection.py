@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import BoolArray, FloatArray, IntArray
+from ..description.problems import did_you_mean
 from ..description.schema import Box, Cylinder, NodeId, Selection
 from ..errors import PartFileError
 
@@ -44,11 +44,8 @@ def select(
 def unknown_set(model: FiniteElementModel, name: str, entry: str) -> str:
     """The sentence for a node set that the part does not have."""
     known = list(model.node_sets)
-    close = get_close_matches(name, known, n=1)
-    hint = f"; did you mean '{close[0]}'?" if close else ""
-    return (
-        f"{entry}: found node set '{name}', expected one of {', '.join(known) or 'none (the file has no sets)'}{hint}"
-    )
+    listed = ", ".join(known) or "none (the file has no sets)"
+    return f"{entry}: found node set '{name}', expected one of {listed}{did_you_mean(name, known)}"
 
 
 def _masks(

@@ -42,7 +42,25 @@ def characters(system: System, shapes: FloatArray) -> tuple[Character, ...]:
         groups.setdefault(system.stems.get(body, body), []).append(body)
     motions = {body: _body_motion(system, body, shapes) for body in system.elements}
     output = _output_motion(system, shapes)
-    return tuple(_character(groups, motions, output, k) for k in range(shapes.shape[1]))
+    return tuple(_character(system, groups, motions, output[:, k], k) for k in range(shapes.shape[1]))
+
+
+def shares_by_group(energy: Mapping[str, float], stems: Mapping[str, str]) -> dict[str, float]:
+    """Shares of the total, like bodies and joints together (`stems` name their groups), the largest first.
+
+    Those above a tenth, and the largest in any case; none when there is no energy.
+    """
+    groups: dict[str, float] = {}
+    for name, part in energy.items():
+        group = stems.get(name, name)
+        groups[group] = groups.get(group, 0.0) + part
+    total = sum(groups.values())
+    if total <= 0.0:
+        return {}
+    ranked = sorted(groups, key=lambda group: -groups[group])
+    return {
+        group: groups[group] / total for group in ranked if group == ranked[0] or groups[group] > _NAMED_SHARE * total
+    }
 
 
 @dataclass(frozen=True)
@@ -90,15 +108,18 @@ def _by_axis(twist: FloatArray, inertia: FloatArray, turn: FloatArray) -> FloatA
 
 
 def _character(
-    groups: Mapping[str, Sequence[str]], motions: Mapping[str, _BodyMotion], output: FloatArray, mode: int
+    system: System,
+    groups: Mapping[str, Sequence[str]],
+    motions: Mapping[str, _BodyMotion],
+    output: FloatArray,
+    mode: int,
 ) -> Character:
-    energy = {group: float(sum(motions[body].energy[mode] for body in bodies)) for group, bodies in groups.items()}
-    total = sum(energy.values())
-    ranked = sorted(energy, key=lambda group: -energy[group])
-    named = [group for group in ranked if group == ranked[0] or energy[group] > _NAMED_SHARE * total]
-    bodies = groups[ranked[0]]
-    words = _alone(motions[bodies[0]], mode) if len(bodies) == 1 else _together(bodies, ranked[0], motions, mode)
-    return Character(ranked[0], words, {group: energy[group] / total for group in named}, _axes(output[:, mode]))
+    energy = {body: float(motion.energy[mode]) for body, motion in motions.items()}
+    shares = shares_by_group(energy, system.stems)
+    leading = next(iter(shares))
+    bodies = groups[leading]
+    words = _alone(motions[bodies[0]], mode) if len(bodies) == 1 else _together(bodies, leading, motions, mode)
+    return Character(leading, words, shares, _axes(output))
 
 
 def _alone(motion: _BodyMotion, mode: int) -> str:

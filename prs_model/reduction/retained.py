@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from difflib import get_close_matches
 
+from ..description.problems import did_you_mean
 from ..description.schema import Interface
 from ..errors import PartFileError
 from .super_element import SuperElement
@@ -49,9 +49,7 @@ def _only_names_a_node(interface: Interface, entry: str, source: str) -> None:
 
 
 def _unknown(node: str, known: tuple[str, ...]) -> str:
-    close = get_close_matches(node, known, n=1)
-    hint = f"; did you mean '{close[0]}'?" if close else ""
-    return f"found '{node}', expected a node of the part ({', '.join(known)}){hint}"
+    return f"found '{node}', expected a node of the part ({', '.join(known)}){did_you_mean(node, known)}"
 
 
 def _renamed(label: str, names: Mapping[str, str]) -> str:

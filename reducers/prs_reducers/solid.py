@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Iterator
-from difflib import get_close_matches
 from typing import ClassVar
 
 import numpy as np
@@ -13,6 +12,7 @@ from pydantic_core import PydanticCustomError
 from scipy.sparse import csr_array
 
 from prs_model.arrays import IntArray
+from prs_model.description.problems import did_you_mean
 from prs_model.description.quantity import Density, Number, Pressure
 from prs_model.description.schema import Section
 from prs_model.description.units import SI, Dimension, Units
@@ -140,9 +140,8 @@ def _by_material(mesh: TetrahedralMesh, options: SolidOptions) -> Iterator[tuple
     for name, material in options.materials.items():
         if name not in mesh.volumes:
             known = ", ".join(mesh.volumes) or "none (the mesh names no volumes)"
-            close = get_close_matches(name, list(mesh.volumes), n=1)
-            hint = f"; did you mean '{close[0]}'?" if close else ""
-            raise PartFileError(mesh.source, f"options.materials: found volume '{name}', expected one of {known}{hint}")
+            message = f"options.materials: found volume '{name}', expected one of {known}"
+            raise PartFileError(mesh.source, message + did_you_mean(name, mesh.volumes))
         given[mesh.volumes[name]] += 1
         yield mesh.elements[mesh.volumes[name]], _material(material)
     if np.any(given != 1):
