@@ -5,7 +5,7 @@ BIN    := $(VENV)/bin
 
 .PHONY: demo test check parts pictures clean
 
-demo: $(VENV)/.test
+demo: $(VENV)/.plot
 	@mkdir -p out
 	$(BIN)/prs-model modes head_3prs -n 8 --picture out/head_3prs_modes.png
 

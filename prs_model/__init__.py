@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from .machine import Machine, load_machine
     from .modes import Modes
     from .plugins import PartRequest, Reducer, list_machines, list_reducers
-    from .reduction import SuperElement, TravellingElement, reduce
+    from .reduction import SuperElement, TravellingElement, read_part, reduce
     from .synthesis import System
 
     __version__: str
@@ -46,6 +46,7 @@ _LAZY = {
     "list_machines": "plugins",
     "list_reducers": "plugins",
     "load_machine": "machine",
+    "read_part": "reduction",
     "reduce": "reduction",
 }
 
@@ -74,6 +75,7 @@ __all__ = [
     "list_machines",
     "list_reducers",
     "load_machine",
+    "read_part",
     "reduce",
 ]
 

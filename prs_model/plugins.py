@@ -10,12 +10,12 @@ from functools import cache
 from importlib.metadata import EntryPoint, entry_points
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, Literal, TypeVar
 
 from .description.problems import closest
 from .description.schema import Body, Section
 from .description.units import Units
-from .errors import PluginError, UnknownNameError, short
+from .errors import PartFileError, PluginError, UnknownNameError, short
 
 if TYPE_CHECKING:
     from .finite_elements import FiniteElementModel
@@ -26,33 +26,70 @@ REDUCERS, MACHINES, TASKS = "prs_model.reducers", "prs_model.machines", "prs_mod
 _WHAT = {REDUCERS: "reducer", MACHINES: "machine", TASKS: "task"}
 _log = logging.getLogger(__name__)
 T = TypeVar("T")
+OptionsT = TypeVar("OptionsT", bound=Section)
+
+NO_UNITS = "the file does not say its units: add 'units', such as mm-N-tonne-s or m-N-kg-s"
 
 
 @dataclass(frozen=True)
-class PartRequest:
-    """What a reducer is asked to read: one part, its file, its validated options (SI) and the file's units."""
+class PartRequest(Generic[OptionsT]):
+    """What a reducer is asked to read: one part, its file, its validated options (SI) and the file's units.
+
+    body: the entry of the machine, or what `reduce` was given; None where there is none.
+    """
 
     name: str
     source: Path | None
-    options: Section
+    options: OptionsT
     units: Units | None
     body: Body | None = None
 
+    @property
+    def path(self) -> Path:
+        """The part file. Raises PartFileError when none was named."""
+        if self.source is None:
+            raise PartFileError(self.name, "no 'source' given, expected a part file")
+        return self.source
 
-class Reducer(ABC):
-    """Reads one kind of part. Full matrices come back as a FiniteElementModel, reduced ones as a SuperElement."""
+    @property
+    def file_units(self) -> Units:
+        """The units the file is written in. Raises PartFileError when nobody said them."""
+        if self.units is None:
+            raise PartFileError(self.source or self.name, NO_UNITS)
+        return self.units
+
+
+class Reducer(ABC, Generic[OptionsT]):
+    """Reads one kind of part. Full matrices come back as a FiniteElementModel, reduced ones as a SuperElement.
+
+    description: one line. Options: a Section, validated like the rest of machine.yaml. needs_source: reads a file.
+    gives: full matrices, which are reduced here, or reduced ones, or either, as the file has it. units: "asked" where
+    the file does not say its units, "optional" where it may, "SI" where it has no others. writes: suffixes of the files
+    that `write` makes. version: raised when what is read of the same file changes, so that stored parts are made again.
+    """
 
     description: ClassVar[str]
     Options: ClassVar[type[Section]]
     needs_source: ClassVar[bool] = True
-    version: ClassVar[int] = 1  # raised when what it reads of the same file changes: stored parts are made again
+    gives: ClassVar[Literal["full", "reduced", "either"]] = "either"
+    units: ClassVar[Literal["asked", "optional", "SI"]] = "asked"
+    writes: ClassVar[tuple[str, ...]] = ()
+    version: ClassVar[int] = 1
 
     @abstractmethod
-    def read(self, part: PartRequest) -> FiniteElementModel | SuperElement:
+    def read(self, part: PartRequest[OptionsT]) -> FiniteElementModel | SuperElement:
         """Read the part in SI units, in its body frame. Raises PartFileError naming the file and what is wrong."""
 
+    def files(self, part: PartRequest[OptionsT]) -> tuple[Path, ...]:
+        """Every file that `read` reads, the source first: a change in one of them makes the part again."""
+        return (part.path,)
 
-def reducer(name: str) -> Reducer:
+    def write(self, element: SuperElement, path: Path, units: Units) -> None:
+        """Write an element in `units`, for suffixes in `writes`. Raises PartFileError when it cannot be written so."""
+        raise NotImplementedError
+
+
+def reducer(name: str) -> Reducer[Any]:
     """The reducer plug-in of that name. Raises UnknownNameError or PluginError."""
     return _use(REDUCERS, name, _reducer)
 
@@ -126,8 +163,8 @@ class _UnfitError(Exception):
     """A plug-in that loads but is not what its group asks for."""
 
 
-def _reducer(point: EntryPoint) -> Reducer:
-    plugin: type[Reducer] = _class(point, Reducer, {"description": str, "Options": type})
+def _reducer(point: EntryPoint) -> Reducer[Any]:
+    plugin: type[Reducer[Any]] = _class(point, Reducer, {"description": str, "Options": type})
     return plugin()
 
 

@@ -52,10 +52,9 @@ def _check_reducer(subject: Subject, place: Place, body: Body) -> None:
         subject.problems.add((*place, "reducer"), str(error))
         return
     _check_source(subject, place, body, plugin.needs_source)
-    if plugin.needs_source:
-        _check_units(subject, place, body)
-    else:
-        _check_not_reduced(subject, place, body)
+    _check_units(subject, place, body, plugin)
+    if plugin.gives == "reduced":
+        _check_not_reduced_again(subject, place, body, plugin.needs_source)
     try:
         options_in_si(body, subject.file.units)
     except ValidationError as error:
@@ -80,19 +79,28 @@ def _check_source(subject: Subject, place: Place, body: Body, needed: bool) -> N
         subject.problems.add((*place, "source"), message)
 
 
-def _check_units(subject: Subject, place: Place, body: Body) -> None:
-    if body.units is not None:
+def _check_units(subject: Subject, place: Place, body: Body, plugin: plugins.Reducer[Any]) -> None:
+    if body.units is None:
+        if plugin.needs_source and plugin.units == "asked":
+            subject.problems.add((*place, "units"), f"found nothing; {plugins.NO_UNITS}")
+    elif not plugin.needs_source:
+        message = f"found units, expected none; they are of part files, and reducer '{body.reducer}' reads none"
+        subject.problems.add((*place, "units"), message)
+    elif plugin.units == "SI":
+        message = f"found units, expected none; files for reducer '{body.reducer}' are in SI: remove 'units'"
+        subject.problems.add((*place, "units"), message)
+    else:
         try:
             Units.parse(body.units)
         except ValueError as error:
             subject.problems.add((*place, "units"), str(error))
 
 
-def _check_not_reduced(subject: Subject, place: Place, body: Body) -> None:
-    """A reducer that reads no file has no file's units, and nothing is left to be reduced."""
-    for key in ("units", "modes", "coupling", "tie"):
+def _check_not_reduced_again(subject: Subject, place: Place, body: Body, has_file: bool) -> None:
+    """The retained nodes of a file may be tied to new ones; the modes are those that it has."""
+    for key in ("modes",) if has_file else ("modes", "coupling", "tie"):
         if getattr(body, key) is not None:
-            message = f"found {key}, expected none; it is for part files, and reducer '{body.reducer}' reads none"
+            message = f"found {key}, expected none; what reducer '{body.reducer}' gives is reduced already: remove it"
             subject.problems.add((*place, key), message)
 
 
@@ -104,7 +112,7 @@ def _check_ground(subject: Subject, place: Place, body: Body) -> None:
 
 def _check_interface(subject: Subject, place: Place, interface: Interface) -> None:
     ways = {
-        "a selection (set, nodes, box, cylinder)": not interface.is_empty(),
+        "a selection (set, nodes, box, cylinder, plane)": not interface.is_empty(),
         "node": interface.node is not None,
         "members": bool(interface.members),
     }
@@ -125,7 +133,7 @@ def _check_members(subject: Subject, place: Place, interface: Interface) -> None
         elif "." in member.name or not member.name:
             subject.problems.add((*where, "name"), f"found '{member.name}', expected a name without dots")
         elif member.is_empty():
-            subject.problems.add(where, "found no nodes, expected one or more of set, nodes, box, cylinder")
+            subject.problems.add(where, "found no nodes, expected one or more of set, nodes, box, cylinder, plane")
         seen.add(member.name)
         _check_selection(subject, where, member)
 
@@ -135,6 +143,8 @@ def _check_selection(subject: Subject, place: Place, selection: Selection) -> No
         _check_box(subject, (*place, "box"), selection.box)
     if selection.cylinder is not None:
         _check_cylinder(subject, (*place, "cylinder"), selection.cylinder)
+    if selection.plane is not None and not any(selection.plane.normal):
+        subject.problems.add((*place, "plane", "normal"), "found a zero normal, expected a direction")
     if selection.nodes is not None and not selection.nodes:
         subject.problems.add((*place, "nodes"), "found an empty list, expected node numbers")
 

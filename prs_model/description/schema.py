@@ -96,6 +96,14 @@ class Cylinder(Section):
     length: tuple[Length, Length] | None = None  # extent along the axis, measured from `point`
 
 
+class Plane(Section):
+    """Nodes within `tolerance` of the plane through `point` with this normal."""
+
+    point: Point
+    normal: tuple[Number, Number, Number]
+    tolerance: PositiveLength
+
+
 class Selection(Section):
     """Which finite-element nodes of the part belong to an interface: named one way, or several to intersect."""
 
@@ -103,9 +111,14 @@ class Selection(Section):
     nodes: tuple[NodeId, ...] | None = None
     box: Box | None = None
     cylinder: Cylinder | None = None
+    plane: Plane | None = None
 
     def is_empty(self) -> bool:
-        return self.set is None and self.nodes is None and self.box is None and self.cylinder is None
+        return all(getattr(self, way) is None for way in Selection.model_fields)
+
+    def alone(self) -> Selection:
+        """The selection without what a Member or an Interface adds to it."""
+        return Selection(**{way: getattr(self, way) for way in Selection.model_fields})
 
 
 class Member(Selection):
@@ -135,7 +148,7 @@ class Interface(Selection):
     """Where a joint takes hold of a body: one selection of nodes, or one per member."""
 
     at: Point | None = None  # the condensation node in the body frame; default: centre of the nodes
-    node: NodeId | None = None  # for parts that are already reduced: the retained node's name or number
+    node: NodeId | None = None  # one node of the part by its name or number; default for reduced parts: this name
     members: tuple[Member, ...] = ()
     coupling: Coupling | None = None
     tie: Tie | None = None

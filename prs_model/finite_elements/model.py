@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from ..arrays import FloatArray, IntArray
 from ..description.schema import Selection
 from ..errors import PartFileError, PrsError
+from ..linear_algebra import lowest_eigenvalues
 from .mass import MassProperties, mass_properties
 from .rigid_motion import transfer
 from .selection import select, unknown_set
@@ -22,8 +25,9 @@ class FiniteElementModel:
     """Full matrices of one part in its body frame, SI.
 
     stiffness, mass: (n, n) sparse. coordinates: (n_nodes, 3) m. dofs: (n, 2), the node index and component (0..5 for
-    ux..rz) of every row. node_ids: (n_nodes,) labels of the part file, where they are known. node_sets: node indices by
-    name; set_weights: areas [m^2] of a set's nodes; areas: (n_nodes,) of all nodes, on the whole outer surface.
+    ux..rz) of every row. node_ids: (n_nodes,) labels (numbers or names) of the part file, where they are known.
+    node_sets: node indices by name; set_weights: areas [m^2] of a set's nodes; areas: (n_nodes,) of all nodes, on the
+    whole outer surface.
     triangles: (t, 3) node indices of the outer surface.
     """
 
@@ -31,7 +35,7 @@ class FiniteElementModel:
     mass: csr_array
     coordinates: FloatArray
     dofs: IntArray
-    node_ids: IntArray | None = None
+    node_ids: NDArray[Any] | None = None
     node_sets: Mapping[str, IntArray] = field(default_factory=dict)
     set_weights: Mapping[str, FloatArray] = field(default_factory=dict)
     areas: FloatArray | None = None
@@ -93,6 +97,14 @@ class FiniteElementModel:
         """Mass [kg], centre [m] and inertia about it [kg m^2]; without the nodes that are clamped."""
         phi = self.rigid_body_modes()
         return mass_properties(phi.T @ (self.mass @ phi))
+
+    def frequencies(self, count: int) -> FloatArray:
+        """The lowest natural frequencies [Hz] of the full matrices, those of rigid motion (about zero) among them.
+
+        Raises PrsError when the matrices are singular beyond rigid motion.
+        """
+        values = lowest_eigenvalues(self.stiffness, self.mass, count)
+        return np.asarray(np.sign(values) * np.sqrt(np.abs(values)) / (2.0 * np.pi))
 
     def select(self, selection: Selection) -> tuple[IntArray, FloatArray]:
         """Indices and weights of the nodes a selection names. Raises PartFileError when it names none."""

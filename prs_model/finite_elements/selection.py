@@ -2,27 +2,44 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Mapping
+from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..description.problems import did_you_mean
-from ..description.schema import Box, Cylinder, NodeId, Selection
+from ..description.schema import Box, Cylinder, NodeId, Plane, Selection
 from ..errors import PartFileError
-
-if TYPE_CHECKING:
-    from .model import FiniteElementModel
 
 Mask = BoolArray
 
+MOST_LISTED = 30  # labels in a message
 SLACK = 1e-6  # of the part's size: nodes this close to the face of a box count as inside
 
 
+class LabelledNodes(Protocol):
+    """Nodes to select from: those of a finite-element model, or the retained ones of a reduced part."""
+
+    @property
+    def source(self) -> str: ...
+    @property
+    def coordinates(self) -> FloatArray: ...
+    @property
+    def rows(self) -> IntArray: ...
+    @property
+    def node_ids(self) -> NDArray[Any] | None: ...
+    @property
+    def node_sets(self) -> Mapping[str, IntArray]: ...
+    @property
+    def set_weights(self) -> Mapping[str, FloatArray]: ...
+    @property
+    def areas(self) -> FloatArray | None: ...
+
+
 def select(
-    model: FiniteElementModel, selection: Selection, *, shift: ArrayLike = (0.0, 0.0, 0.0), entry: str = "selection"
+    model: LabelledNodes, selection: Selection, *, shift: ArrayLike = (0.0, 0.0, 0.0), entry: str = "selection"
 ) -> tuple[IntArray, FloatArray]:
     """Node indices (m,) and weights (m,) that a selection means; several ways of naming them are intersected.
 
@@ -33,7 +50,7 @@ def select(
     """
     masks = dict(_masks(model, selection, np.asarray(shift, dtype=float), entry))
     if not masks:
-        raise PartFileError(model.source, f"{entry}: no nodes named, expected one of set, nodes, box, cylinder")
+        raise PartFileError(model.source, f"{entry}: no nodes named, expected one of set, nodes, box, cylinder, plane")
     alive = np.any(model.rows >= 0, axis=1)
     chosen = np.flatnonzero(np.logical_and.reduce([alive, *masks.values()]))
     if not len(chosen):
@@ -41,16 +58,14 @@ def select(
     return chosen, _weights(model, selection, chosen)
 
 
-def unknown_set(model: FiniteElementModel, name: str, entry: str) -> str:
+def unknown_set(model: LabelledNodes, name: str, entry: str) -> str:
     """The sentence for a node set that the part does not have."""
     known = list(model.node_sets)
     listed = ", ".join(known) or "none (the file has no sets)"
     return f"{entry}: found node set '{name}', expected one of {listed}{did_you_mean(name, known)}"
 
 
-def _masks(
-    model: FiniteElementModel, selection: Selection, shift: FloatArray, entry: str
-) -> Iterable[tuple[str, Mask]]:
+def _masks(model: LabelledNodes, selection: Selection, shift: FloatArray, entry: str) -> Iterable[tuple[str, Mask]]:
     if selection.set is not None:
         if selection.set not in model.node_sets:
             raise PartFileError(model.source, unknown_set(model, selection.set, f"{entry}.set"))
@@ -63,28 +78,30 @@ def _masks(
         yield "box", _in_box(points, selection.box, slack)
     if selection.cylinder is not None:
         yield "cylinder", _on_cylinder(points, selection.cylinder, slack, model.source, entry)
+    if selection.plane is not None:
+        yield "plane", _on_plane(points, selection.plane, model.source, entry)
 
 
-def _mask_of(model: FiniteElementModel, nodes: IntArray) -> Mask:
+def _mask_of(model: LabelledNodes, nodes: IntArray) -> Mask:
     mask = np.zeros(len(model.coordinates), dtype=bool)
     mask[nodes] = True
     return mask
 
 
-def _labelled(model: FiniteElementModel, labels: tuple[NodeId, ...], entry: str) -> IntArray:
+def _labelled(model: LabelledNodes, labels: tuple[NodeId, ...], entry: str) -> IntArray:
     if model.node_ids is None:
         raise PartFileError(
             model.source, f"{entry}: its nodes have no labels that are read; name a set, a box or a cylinder instead"
         )
-    place = {int(label): index for index, label in enumerate(model.node_ids)}
-    wanted = [int(label) if str(label).lstrip("-").isdigit() else label for label in labels]
-    missing = [label for label in wanted if label not in place]
+    place = {str(label): index for index, label in enumerate(model.node_ids)}
+    missing = [label for label in labels if str(label) not in place]
     if missing:
-        low, high = model.node_ids.min(), model.node_ids.max()
-        raise PartFileError(
-            model.source, f"{entry}: found node {missing[0]!r}, expected labels of the part file ({low} to {high})"
-        )
-    return np.array([place[label] for label in wanted if isinstance(label, int)], dtype=np.int64)
+        known = [str(label) for label in model.node_ids]
+        listed = ", ".join(known) if len(known) <= MOST_LISTED else f"{len(known)} of them, {known[0]} to {known[-1]}"
+        near = did_you_mean(str(missing[0]), known) if len(known) <= MOST_LISTED else ""
+        expected = f"expected a node of the part ({listed}){near}"
+        raise PartFileError(model.source, f"{entry}: found node '{missing[0]}', {expected}")
+    return np.array([place[str(label)] for label in labels], dtype=np.int64)
 
 
 def _in_box(points: FloatArray, box: Box, slack: float) -> Mask:
@@ -109,14 +126,22 @@ def _on_cylinder(points: FloatArray, cylinder: Cylinder, slack: float, source: s
     return np.asarray(on)
 
 
-def _weights(model: FiniteElementModel, selection: Selection, chosen: IntArray) -> FloatArray:
+def _on_plane(points: FloatArray, plane: Plane, source: str, entry: str) -> Mask:
+    normal = np.array(plane.normal, dtype=float)
+    if not np.any(normal):
+        raise PartFileError(source, f"{entry}.plane.normal: found (0, 0, 0), expected a direction")
+    distance = (points - np.array(plane.point, dtype=float)) @ (normal / np.linalg.norm(normal))
+    return np.asarray(np.abs(distance) <= plane.tolerance)
+
+
+def _weights(model: LabelledNodes, selection: Selection, chosen: IntArray) -> FloatArray:
     weights = np.zeros(len(model.coordinates)) if model.areas is None else model.areas.copy()
     if selection.set is not None and selection.set in model.set_weights:
         weights[model.node_sets[selection.set]] = model.set_weights[selection.set]
     return np.asarray(weights[chosen], dtype=float)
 
 
-def _nothing(model: FiniteElementModel, masks: dict[str, Mask], alive: Mask, entry: str) -> str:
+def _nothing(model: LabelledNodes, masks: dict[str, Mask], alive: Mask, entry: str) -> str:
     found = ", ".join(f"{name} {np.count_nonzero(mask)}" for name, mask in masks.items())
     if np.any(np.logical_and.reduce(list(masks.values()))):
         return f"{entry}: all its nodes are clamped ({found}); clamp another set, or hold the interface elsewhere"

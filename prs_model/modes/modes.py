@@ -10,9 +10,9 @@ import numpy as np
 
 from ..arrays import BoolArray, FloatArray
 from ..errors import PrsError
+from ..linear_algebra import lowest_modes, slowest_rate
 from ..synthesis.system import System
 from .character import Character, characters
-from .eigen import lowest_modes, slowest_rate
 
 _RIGID = 1e-8
 

@@ -9,7 +9,7 @@ from scipy.linalg import qr
 from scipy.sparse import csr_array
 
 from ..arrays import FloatArray
-from .factorize import Solve, factorize
+from ..linear_algebra import Solve, factorize
 
 ConstrainedSolve = Callable[[FloatArray, FloatArray], FloatArray]
 

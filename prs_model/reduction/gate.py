@@ -11,7 +11,7 @@ from ..arrays import FloatArray
 from ..errors import PhysicsError
 from ..finite_elements.mass import excess_moment, mass_properties
 from ..finite_elements.rigid_motion import transfer
-from .super_element import SuperElement
+from .super_element import SuperElement, present_motions
 
 SYMMETRY, DEFINITE, RIGID, HELD, BODY, MODAL = 1e-9, 1e-9, 1e-8, 1e-8, 1e-6, 1e-8
 SOFT = 1e6  # s^-2: beside a stiffness that makes the mass oscillate this slowly, round-off does not count
@@ -104,11 +104,8 @@ def _with_unit_diagonal(matrix: FloatArray, floor: FloatArray) -> tuple[FloatArr
 
 
 def _rigid_motion(element: SuperElement) -> Check:
-    rows = element.motions.reshape(-1, element.size)
-    phi = element.rigid_body_modes()
-    wanted = transfer(element.positions).reshape(-1, 6)
-    present = np.any(rows != 0.0, axis=1)
-    figure = _ratio(np.linalg.norm((rows @ phi - wanted)[present]), np.linalg.norm(wanted[present]))
+    rows, wanted = present_motions(element.motions, transfer(element.positions))
+    figure = _ratio(np.linalg.norm(rows @ element.rigid_body_modes() - wanted), np.linalg.norm(wanted))
     cause = "the nodes cannot move as one rigid body: check node positions, output frames and length units"
     return Check("nodes follow a rigid motion", figure, RIGID, cause)
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..description.schema import Interface, Member, Point, Selection
+from ..description.schema import Coupling, Interface, Member, Point, Selection
 from ..errors import PartFileError
 from ..finite_elements import FiniteElementModel
 from ..finite_elements.selection import select
@@ -40,27 +40,28 @@ def _ties(
 ) -> Iterator[Tie]:
     entry, coupling = f"interfaces.{name}", settings.coupling_of(interface)
     if interface.node is not None:
-        raise PartFileError(model.source, f"{entry}.node: only parts that are already reduced have retained nodes")
+        interface = interface.model_copy(update={"node": None, "nodes": (interface.node,)})
     if interface.members and not interface.is_empty():
         raise PartFileError(model.source, f"{entry}: name the nodes in the interface or in its members, not in both")
     parts: tuple[Selection, ...] = interface.members or (interface,)
-    chosen = [select(model, _only_selection(part), shift=shift, entry=_entry(entry, part)) for part in parts]
+    chosen = [select(model, part.alone(), shift=shift, entry=_entry(entry, part)) for part in parts]
     if settings.tie_of(interface) == "interface" and interface.members:
         for member, each in zip(interface.members, chosen, strict=True):
             indices, weights = _union([each])
             position = _position(model, member.at, shift, indices, weights)
-            yield Tie(f"{name}.{member.name}", indices, weights, position, coupling)
+            yield _tie(f"{name}.{member.name}", indices, weights, position, coupling)
     else:
         indices, weights = _union(chosen)
-        yield Tie(name, indices, weights, _position(model, interface.at, shift, indices, weights), coupling)
+        yield _tie(name, indices, weights, _position(model, interface.at, shift, indices, weights), coupling)
+
+
+def _tie(node: str, indices: IntArray, weights: FloatArray, position: FloatArray, coupling: Coupling) -> Tie:
+    """One node alone has no motions to average: it is held rigidly, whatever the coupling."""
+    return Tie(node, indices, weights, position, "rigid" if len(indices) == 1 else coupling)
 
 
 def _entry(entry: str, part: Selection) -> str:
     return f"{entry}.members[{part.name}]" if isinstance(part, Member) else entry
-
-
-def _only_selection(part: Selection) -> Selection:
-    return Selection(set=part.set, nodes=part.nodes, box=part.box, cylinder=part.cylinder)
 
 
 def _union(chosen: list[tuple[IntArray, FloatArray]]) -> tuple[IntArray, FloatArray]:

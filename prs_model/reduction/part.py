@@ -1,9 +1,9 @@
-"""From a body of the description to its super-element: read, reduce, check, store."""
+"""From a body of the description, or the arguments of `reduce`, to a super-element: read, reduce, check, store."""
 
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeVar
@@ -14,15 +14,17 @@ from pydantic import ValidationError
 from .. import plugins
 from ..description.messages import report
 from ..description.problems import Place, Problems
-from ..description.schema import Body, Coupling, Interface, ReductionDefaults, Section
+from ..description.schema import Body, Coupling, Interface, NodeId, ReductionDefaults, Section
 from ..description.units import SI, Units
 from ..errors import PartFileError, PrsError
 from ..finite_elements import FiniteElementModel
 from .from_model import reduce_model
-from .recipe import Settings, file_hash, recipe
-from .retained import named_by_interfaces
+from .model_gate import check_model
+from .recipe import Settings, recipe
+from .retained import at_interfaces
 from .stations import reduce_travelling, travelling_interface
-from .store import Element, StoredPart
+from .store import Element, StoredPart, files_hash
+from .summary import echo
 from .super_element import SuperElement
 from .travelling import TravellingElement
 
@@ -41,28 +43,24 @@ def build_part(
     folder: Path,
     *,
     stem: str | None = None,
-    units: Units = SI,
 ) -> SuperElement | TravellingElement:
     """The super-element of a body: from the store when it is there and up to date, else read, reduced and stored.
 
     name: the body's, for messages; stem: the entry it was expanded from (``rod`` of ``rod_2``), under which it is
-    stored once for all; folder: the machine's, to which `source` and the store are relative; units: of the options
-    as written. Raises UnknownNameError, DescriptionError, PartFileError or PhysicsError.
+    stored once for all; folder: the machine's, to which `source` and the store are relative.
+    Raises UnknownNameError, DescriptionError, PartFileError or PhysicsError.
     """
     stem = stem or name
-    reducer = plugins.reducer(body.reducer)
-    options = validated(reducer.Options, body.options, f"part {stem}", ("bodies", stem, "options"), units)
+    reducer, request = _asked(stem, body, folder)
     settings = Settings.of(body, defaults)
-    source = _source(stem, body, folder, reducer)
-    request = plugins.PartRequest(stem, source, options, _file_units(stem, body, folder), body)
-    if source is None:
+    if request.source is None:
         return _read(reducer, request, body, settings)[0]
-    text = recipe(body, options, settings, reducer.version)
-    store = None if defaults.store is None else StoredPart(folder / defaults.store, stem, text, source)
-    element = _made.get(_key(stem, text, source, store))
+    text, files = recipe(body, request.options, settings, reducer.version), tuple(reducer.files(request))
+    store = None if defaults.store is None else StoredPart(folder / defaults.store, stem, text, files)
+    element = _made.get(_key(stem, text, files, store))
     if element is None:
-        element = _found_or_made(reducer, request, body, settings, text, store)
-        _made[_key(stem, text, source, store)] = element
+        element = _found_or_made(reducer, request, body, settings, text, files, store)
+        _made[_key(stem, text, files, store)] = element
         if len(_made) > MOST_KEPT:
             del _made[next(iter(_made))]
     return _travelling_with(element, body)
@@ -72,9 +70,10 @@ def reduce(
     reducer: str,
     source: str | Path | None = None,
     *,
+    nodes: Mapping[str, Any] | None = None,
     interfaces: Mapping[str, Interface | Mapping[str, Any]] | None = None,
     units: str | None = None,
-    modes: int = 3,
+    modes: int | None = None,
     coupling: Coupling = "rigid",
     grounded: bool = False,
     clamped: Iterable[str] = (),
@@ -82,27 +81,63 @@ def reduce(
 ) -> SuperElement:
     """Read one part with any reducer plug-in and reduce it, outside of a machine.
 
-    interfaces: as in machine.yaml, by name; units: of the part file, such as ``mm-N-tonne-s``. Everything given here
+    nodes: short for interfaces that are one node or several, such as ``{"tip": 3, "root": [11, 19]}`` (a reducer with
+    an option of that name gets it instead); interfaces: as in machine.yaml, by name; units: of the part file, such as
+    ``mm-N-tonne-s``; modes: how many to keep of a part that is reduced here (default 3). Everything given here
     (options, places of interfaces) is in SI. Raises UnknownNameError, DescriptionError, PartFileError, PhysicsError.
     """
-    name = Path(source).stem if source is not None else reducer
+    if nodes is not None and "nodes" in plugins.reducer(reducer).Options.model_fields:
+        nodes, options = None, {**options, "nodes": nodes}
     entries = {
-        "frame": name,
-        "reducer": reducer,
-        "source": None if source is None else str(source),
-        "units": units,
-        "options": options,
-        "interfaces": interfaces or {},
+        **_entries(reducer, source, units, options),
+        "interfaces": {**_at_nodes(nodes or {}), **(interfaces or {})},
         "clamped": tuple(clamped),
         "grounded": grounded,
         "modes": modes,
         "coupling": coupling,
     }
     body = validated(Body, entries, f"reduce('{reducer}', ...)", (), SI)
-    element = build_part(name, body, ReductionDefaults(), Path())
+    element = build_part(body.frame, body, ReductionDefaults(), Path())
     if isinstance(element, TravellingElement):
-        raise PrsError(f"reduce: interface of {name} travels with joint {element.joint}; describe a machine for that")
+        travels = f"interface of {body.frame} travels with joint {element.joint}"
+        raise PrsError(f"reduce: {travels}; describe a machine for that")
     return element
+
+
+def read_part(
+    reducer: str, source: str | Path | None = None, *, units: str | None = None, **options: Any
+) -> FiniteElementModel | SuperElement:
+    """What a reducer reads of a part, in SI, before interfaces, reduction and the physics gate.
+
+    units: of the part file. Options are in SI. Raises UnknownNameError, DescriptionError, PartFileError.
+    """
+    body = validated(Body, _entries(reducer, source, units, options), f"read_part('{reducer}', ...)", (), SI)
+    plugin, request = _asked(body.frame, body, Path())
+    return plugin.read(request)
+
+
+def _entries(reducer: str, source: str | Path | None, units: str | None, options: Mapping[str, Any]) -> dict[str, Any]:
+    return {
+        "frame": Path(source).stem if source is not None else reducer,
+        "reducer": reducer,
+        "source": None if source is None else str(source),
+        "units": units,
+        "options": options,
+    }
+
+
+def _at_nodes(nodes: Mapping[str, NodeId | Sequence[NodeId]]) -> dict[str, dict[str, Any]]:
+    return {
+        name: {"node": each} if isinstance(each, int | str) else {"nodes": tuple(each)} for name, each in nodes.items()
+    }
+
+
+def _asked(name: str, body: Body, folder: Path) -> tuple[plugins.Reducer[Any], plugins.PartRequest[Any]]:
+    """The reducer of a body, and what it is asked for."""
+    reducer = plugins.reducer(body.reducer)
+    options = validated(reducer.Options, body.options, f"part {name}", ("bodies", name, "options"), SI)
+    source = _source(name, body, folder, reducer)
+    return reducer, plugins.PartRequest(name, source, options, _file_units(body, source, reducer), body)
 
 
 def validated(section: type[S], entries: Mapping[str, Any], file: str, place: Place, units: Units) -> S:
@@ -130,7 +165,7 @@ def _plain(value: Any) -> Any:
     return value
 
 
-def _source(name: str, body: Body, folder: Path, reducer: plugins.Reducer) -> Path | None:
+def _source(name: str, body: Body, folder: Path, reducer: plugins.Reducer[Any]) -> Path | None:
     if not reducer.needs_source:
         return None
     if body.source is None:
@@ -138,16 +173,24 @@ def _source(name: str, body: Body, folder: Path, reducer: plugins.Reducer) -> Pa
     return folder / body.source
 
 
-def _file_units(name: str, body: Body, folder: Path) -> Units | None:
+def _file_units(body: Body, source: Path | None, reducer: plugins.Reducer[Any]) -> Units | None:
+    """The part file's units as said, where the reducer wants them said."""
+    place = source or body.reducer
+    if body.units is None:
+        if source is not None and reducer.units == "asked":
+            raise PartFileError(place, plugins.NO_UNITS)
+        return None
+    if source is None or reducer.units == "SI":
+        raise PartFileError(place, f"reducer '{body.reducer}' takes SI only: leave 'units' out")
     try:
-        return None if body.units is None else Units.parse(body.units)
+        return Units.parse(body.units)
     except ValueError as error:
-        raise PartFileError(folder / (body.source or ""), f"bodies.{name}.units: {error}") from error
+        raise PartFileError(place, f"units: {error}") from error
 
 
-def _key(stem: str, text: str, source: Path, store: StoredPart | None) -> tuple[object, ...]:
+def _key(stem: str, text: str, files: Sequence[Path], store: StoredPart | None) -> tuple[object, ...]:
     stored = (None, None) if store is None else (store.path.resolve(), _stamp(store.path))
-    return stem, text, source.resolve(), _stamp(source), *stored
+    return stem, text, *((file.resolve(), _stamp(file)) for file in files), *stored
 
 
 def _stamp(path: Path) -> tuple[int, int] | None:
@@ -160,31 +203,31 @@ def _stamp(path: Path) -> tuple[int, int] | None:
 
 
 def _found_or_made(
-    reducer: plugins.Reducer,
-    request: plugins.PartRequest,
+    reducer: plugins.Reducer[Any],
+    request: plugins.PartRequest[Any],
     body: Body,
     settings: Settings,
     text: str,
+    files: Sequence[Path],
     store: StoredPart | None,
 ) -> Element:
     stored = store.find() if store is not None else None
     if stored is not None:
         stored.check()
         return stored
-    if request.source is None or not request.source.exists():
-        raise PartFileError(
-            request.source or request.name, f"there is no such file; correct bodies.{request.name}.source"
-        )
+    if not request.path.exists():
+        raise PartFileError(request.path, f"there is no such file; correct bodies.{request.name}.source")
     element, reduced_here = _read(reducer, request, body, settings)
-    made_from = {"recipe": text, "source": str(body.source), "source_sha256": file_hash(request.source)}
+    made_from = {"recipe": text, "source": str(body.source), "source_sha256": files_hash(files)}
     element = _with_provenance(element, made_from)
+    echo(element, request.name)
     if store is not None and reduced_here:
         store.keep(element)
     return element
 
 
 def _read(
-    reducer: plugins.Reducer, request: plugins.PartRequest, body: Body, settings: Settings
+    reducer: plugins.Reducer[Any], request: plugins.PartRequest[Any], body: Body, settings: Settings
 ) -> tuple[Element, bool]:
     """The element past the gate, and whether its reduction was ours."""
     part = reducer.read(request)
@@ -192,15 +235,24 @@ def _read(
     if isinstance(part, FiniteElementModel):
         element, ours = _from_model(part, body, settings, place), True
     else:
-        element, ours = named_by_interfaces(part, body.interfaces, place), False
-        element = replace(element, grounded=element.grounded or body.grounded)
+        element, ours = _as_reduced(part, body, settings, place), False
     element = _with_provenance(element, {"name": request.name, "reducer": body.reducer})
     element.check()
     return element, ours
 
 
+def _as_reduced(element: SuperElement, body: Body, settings: Settings, place: str) -> SuperElement:
+    full_only = {"modes": body.modes is not None, "clamped": bool(body.clamped)}
+    for entry, given in full_only.items():
+        if given:
+            raise PartFileError(place, f"{entry}: the part is already reduced, and keeps what it has; remove '{entry}'")
+    element = replace(element, grounded=element.grounded or body.grounded)
+    return at_interfaces(element, body.interfaces, settings, place)
+
+
 def _from_model(model: FiniteElementModel, body: Body, settings: Settings, place: str) -> Element:
     model = replace(model, provenance={**model.provenance, "name": Path(place).stem, "source": place})
+    check_model(model, grounded=body.grounded and not body.clamped)
     if body.clamped:
         model = model.clamp(body.clamped)
     logger.info("%s: reducing %d DOFs", model.name, model.size)

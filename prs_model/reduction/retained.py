@@ -1,57 +1,187 @@
-"""Parts that come already reduced: their retained nodes take the names of the body's interfaces."""
+"""Interfaces of parts that come already reduced: one retained node, or several tied to a new one."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import replace
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
 
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
 from ..description.problems import did_you_mean
-from ..description.schema import Interface
+from ..description.schema import Coupling, Interface, Selection
 from ..errors import PartFileError
-from .super_element import SuperElement
+from ..finite_elements.rigid_motion import transfer
+from ..finite_elements.selection import select
+from .recipe import Settings
+from .super_element import AXES, SuperElement, node_labels, present_motions
 
 
-def named_by_interfaces(element: SuperElement, interfaces: Mapping[str, Interface], source: str) -> SuperElement:
-    """Rename the node that each interface's `node` (default: its own name) refers to; labels follow.
+def at_interfaces(
+    element: SuperElement, interfaces: Mapping[str, Interface], settings: Settings, source: str
+) -> SuperElement:
+    """The element with a node for every interface; retained nodes that are not tied keep their labels.
 
-    Raises PartFileError for a node the part does not have, one named twice, or entries that need a full model.
+    An interface is one node of the part (`node`, default: its own name), or a selection of them: tied rigidly to a new
+    node, whose six coordinates replace theirs, or averaged, which adds a node and no coordinate. Raises PartFileError
+    for a node the part does not have, one used twice, or an interface that cannot move in six ways.
     """
-    new_names: dict[str, str] = {}
+    names: dict[str, str] = {}
     for name, interface in interfaces.items():
-        entry = f"interfaces.{name}"
-        _only_names_a_node(interface, entry, source)
-        node = name if interface.node is None else str(interface.node)
-        if node not in element.nodes:
-            raise PartFileError(source, f"{entry}.node: {_unknown(node, element.nodes)}")
-        if node in new_names:
-            raise PartFileError(source, f"{entry}.node: node '{node}' is interface '{new_names[node]}' already")
-        new_names[node] = name
-    nodes = tuple(new_names.get(node, node) for node in element.nodes)
+        if interface.travel is not None:
+            raise PartFileError(
+                source, f"interfaces.{name}.travel: a part that is already reduced cannot be travelled over"
+            )
+        if interface.is_empty() and not interface.members:
+            node = _one_node(element, name, interface, names, source)
+            names[node] = name
+    ties = [tie for name, each in interfaces.items() for tie in _ties(element, name, each, settings, source)]
+    for tie in ties:
+        element = _tied(element, tie, names, source)
+    return _renamed(replace(element, node_sets={}), names, source) if interfaces else element
+
+
+@dataclass(frozen=True, eq=False)
+class _Tie:
+    """Retained nodes, by name, that act through a new one at `position` (3,) [m]."""
+
+    node: str
+    nodes: tuple[str, ...]
+    position: FloatArray
+    coupling: Coupling
+
+
+@dataclass(frozen=True, eq=False)
+class _RetainedNodes:
+    """The element's nodes as `select` wants them."""
+
+    source: str
+    coordinates: FloatArray
+    rows: IntArray
+    node_ids: IntArray
+    node_sets: Mapping[str, IntArray]
+    set_weights: Mapping[str, FloatArray] = field(default_factory=dict)
+    areas: FloatArray | None = None
+
+
+def _one_node(element: SuperElement, name: str, interface: Interface, names: Mapping[str, str], source: str) -> str:
+    entry, node = f"interfaces.{name}.node", name if interface.node is None else str(interface.node)
+    if interface.at is not None:
+        raise PartFileError(source, f"interfaces.{name}.at: a retained node stands where the file says; remove 'at'")
+    if node not in element.nodes:
+        known = list(element.nodes)
+        found = f"found '{node}', expected a node of the part ({', '.join(known)}){did_you_mean(node, known)}"
+        raise PartFileError(source, f"{entry}: {found}")
+    if node in names:
+        raise PartFileError(source, f"{entry}: node '{node}' is interface '{names[node]}' already")
+    motion = element.motions[element.node(node)]
+    if np.linalg.matrix_rank(motion) < 6:
+        there = [axis for axis, row in zip(AXES, motion, strict=True) if np.any(row)]
+        raise PartFileError(
+            source,
+            f"{entry}: node '{node}' has {', '.join(there) or 'no motion'} only, and a joint takes hold of six "
+            "motions; name three or more nodes as 'nodes', or export its rotations",
+        )
+    return node
+
+
+def _ties(element: SuperElement, name: str, interface: Interface, settings: Settings, source: str) -> Iterator[_Tie]:
+    entry, coupling = f"interfaces.{name}", settings.coupling_of(interface)
+    sets = {key: np.array([element.node(each) for each in nodes]) for key, nodes in element.node_sets.items()}
+    rows = np.where(np.any(element.motions != 0.0, axis=2), 0, -1)
+    nodes = _RetainedNodes(source, element.positions, rows, np.array(element.nodes), sets)
+
+    def chosen(part: Selection, entry: str) -> IntArray:
+        return select(nodes, part.alone(), entry=entry)[0]
+
+    def tie(node: str, at: tuple[float, ...] | None, indices: IntArray) -> _Tie:
+        position = element.positions[indices].mean(axis=0) if at is None else np.array(at, dtype=float)
+        return _Tie(node, tuple(element.nodes[index] for index in indices), position, coupling)
+
+    groups = [chosen(each, f"{entry}.members[{each.name}]") for each in interface.members]
+    if interface.members and settings.tie_of(interface) == "interface":
+        for member, indices in zip(interface.members, groups, strict=True):
+            yield tie(f"{name}.{member.name}", member.at, indices)
+    elif interface.members:
+        yield tie(name, interface.at, np.unique(np.concatenate(groups)))
+    elif not interface.is_empty():
+        yield tie(name, interface.at, chosen(interface, entry))
+
+
+def _tied(element: SuperElement, tie: _Tie, names: Mapping[str, str], source: str) -> SuperElement:
+    taken = [node for node in tie.nodes if node in names or node not in element.nodes]
+    if taken and tie.coupling == "rigid":
+        other = names.get(taken[0], "another one")
+        raise PartFileError(source, f"interfaces.{tie.node}: node '{taken[0]}' belongs to interface {other} already")
+    indices = np.array([element.node(node) for node in tie.nodes])
+    arms = element.positions[indices] - tie.position
+    if not _can_turn(element.motions[indices], arms):
+        raise PartFileError(
+            source,
+            f"interfaces.{tie.node}: its {len(indices)} nodes lie on one line and cannot take up a rotation about it; "
+            "select nodes of a surface",
+        )
+    return _rigid(element, tie, indices, source) if tie.coupling == "rigid" else _averaged(element, tie, indices)
+
+
+def _can_turn(motions: FloatArray, arms: FloatArray) -> bool:
+    """Whether the translations (or, of one node, all motions) tell six rigid motions apart; arms (k, 3) [m]."""
+    wanted = transfer(arms)
+    wanted[..., 3:] /= np.linalg.norm(arms, axis=1).max() or 1.0
+    rows = present_motions(motions, wanted)[1]
+    return bool(np.linalg.matrix_rank(rows, tol=1e-6) == 6)
+
+
+def _rigid(element: SuperElement, tie: _Tie, indices: IntArray, source: str) -> SuperElement:
+    """u = P u' with the tied nodes' coordinates replaced by the six of one node: u_j = X(r_j - r) q, eq. (4)-(6)."""
+    rows, wanted = present_motions(element.motions[indices], transfer(element.positions[indices] - tie.position))
+    own = np.flatnonzero(np.any(rows != 0.0, axis=0))
+    if len(own) != np.linalg.matrix_rank(rows):
+        raise PartFileError(
+            source,
+            f"interfaces.{tie.node}: the coordinates of its nodes are not their motions; use 'coupling: averaged'",
+        )
+    kept = np.setdiff1d(np.arange(element.size), own)
+    projection = np.zeros((element.size, 6 + len(kept)))
+    projection[own, :6] = np.linalg.lstsq(rows[:, own], wanted, rcond=None)[0]
+    projection[kept, 6 + np.arange(len(kept))] = 1.0
+    others = np.setdiff1d(np.arange(len(element.nodes)), indices)
+    return replace(
+        element,
+        stiffness=projection.T @ element.stiffness @ projection,
+        mass=projection.T @ element.mass @ projection,
+        nodes=(tie.node, *(element.nodes[index] for index in others)),
+        positions=np.vstack([tie.position, element.positions[others]]),
+        motions=np.concatenate([np.eye(6, 6 + len(kept))[None], element.motions[others] @ projection]),
+        labels=(*node_labels(tie.node), *(element.labels[index] for index in kept)),
+        node_sets={},
+        surface=None if element.surface is None else element.surface.through(projection),
+    )
+
+
+def _averaged(element: SuperElement, tie: _Tie, indices: IntArray) -> SuperElement:
+    """A node that moves as its nodes do on average: U = (X^T X)^-1 X^T u over their translations."""
+    motions = element.motions[indices, :3].reshape(-1, element.size)
+    arms = transfer(element.positions[indices] - tie.position)[:, :3].reshape(-1, 6)
+    there = np.any(motions != 0.0, axis=1)
+    average = np.linalg.lstsq(arms[there], motions[there], rcond=None)[0]
+    return replace(
+        element,
+        nodes=(tie.node, *element.nodes),
+        positions=np.vstack([tie.position, element.positions]),
+        motions=np.concatenate([average[None], element.motions]),
+        node_sets={},
+    )
+
+
+def _renamed(element: SuperElement, names: Mapping[str, str], source: str) -> SuperElement:
+    nodes = tuple(names.get(node, node) for node in element.nodes)
     if len(set(nodes)) < len(nodes):
         twice = next(node for node in nodes if nodes.count(node) > 1)
         raise PartFileError(source, f"interface '{twice}' has the name of another retained node; give it another name")
-    labels = tuple(_renamed(label, new_names) for label in element.labels)
-    return replace(element, nodes=nodes, labels=labels)
+    return replace(element, nodes=nodes, labels=tuple(_label(label, names) for label in element.labels))
 
 
-def _only_names_a_node(interface: Interface, entry: str, source: str) -> None:
-    full_only = {
-        "set, nodes, box or cylinder": not interface.is_empty(),
-        "members": bool(interface.members),
-        "at": interface.at is not None,
-        "travel": interface.travel is not None,
-    }
-    for what, given in full_only.items():
-        if given:
-            raise PartFileError(
-                source, f"{entry}: found '{what}', but the part is already reduced: name one of its nodes with 'node'"
-            )
-
-
-def _unknown(node: str, known: tuple[str, ...]) -> str:
-    return f"found '{node}', expected a node of the part ({', '.join(known)}){did_you_mean(node, known)}"
-
-
-def _renamed(label: str, names: Mapping[str, str]) -> str:
+def _label(label: str, names: Mapping[str, str]) -> str:
     node, dot, axis = label.rpartition(".")
     return f"{names[node]}.{axis}" if dot and node in names else label

@@ -96,6 +96,7 @@ class _Header(BaseModel):
     labels: Annotated[tuple[str, ...], Strict(False)]
     n_modes: int
     grounded: bool
+    node_sets: dict[str, Annotated[tuple[str, ...], Strict(False)]] = {}
     provenance: dict[str, str]
     joint: str | None = None
 
@@ -108,6 +109,7 @@ def _header(element: SuperElement) -> dict[str, Any]:
         "labels": element.labels,
         "n_modes": element.n_modes,
         "grounded": element.grounded,
+        **({"node_sets": dict(element.node_sets)} if element.node_sets else {}),
         "provenance": dict(element.provenance),
     }
 
@@ -163,6 +165,7 @@ def _station(header: _Header, arrays: Arrays, index: int) -> SuperElement:
         grounded=header.grounded,
         surface=surface,
         labels=header.labels,
+        node_sets=header.node_sets,
         provenance=header.provenance,
     )
 

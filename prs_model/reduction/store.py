@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import hashlib
 import logging
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -19,12 +21,16 @@ Element = SuperElement | TravellingElement
 
 @dataclass(frozen=True)
 class StoredPart:
-    """Where the super-element of one recipe is kept. folder: the store; source: the part file it was made from."""
+    """Where the super-element of one recipe is kept. folder: the store; files: what it was made from, source first."""
 
     folder: Path
     stem: str
     recipe: str
-    source: Path
+    files: tuple[Path, ...]
+
+    @property
+    def source(self) -> Path:
+        return self.files[0]
 
     @property
     def path(self) -> Path:
@@ -43,7 +49,7 @@ class StoredPart:
         if (made_by := provenance(element).get("recipe", "")) != self.recipe:
             what = "; ".join(_differences(self.recipe, made_by)) or "it has none"
             raise PartFileError(self.path, f"holds another recipe than its name says ({what}); delete it")
-        if self.source.exists() and provenance(element).get("source_sha256") != file_hash(self.source):
+        if self.source.exists() and provenance(element).get("source_sha256") != files_hash(self.files):
             logger.info("%s: %s has changed since %s was made from it", self.stem, self.source.name, self.path.name)
             return None
         return element
@@ -74,6 +80,12 @@ class StoredPart:
         if (machine / "rebuild.py").exists():
             return f"make the part file with: {rebuild_command(machine)}"
         return "put the part file there, correct 'source', or go back to the settings it was reduced with"
+
+
+def files_hash(files: Sequence[Path]) -> str:
+    """SHA-256 of a file, or of the hashes of several; one that is not there counts as such."""
+    hashes = [file_hash(file) if file.is_file() else "" for file in files]
+    return hashes[0] if len(hashes) == 1 else hashlib.sha256(" ".join(hashes).encode()).hexdigest()
 
 
 def _recipe_in(path: Path) -> str:

@@ -30,6 +30,7 @@ class SuperElement:
     stiffness, mass: (n, n), SI. nodes: k names; positions: (k, 3) m. motions: (k, 6, n), where ``motions[j] @ u`` is
     the motion (delta [m], epsilon [rad]) of node j in body axes. n_modes: number of trailing modal coordinates.
     grounded: held to the ground inside the part, so rigid motion costs energy. labels: one per coordinate.
+    node_sets: names of nodes, by the name of the set. A node without rotations, say, has zero rows in its motions.
     """
 
     stiffness: FloatArray
@@ -41,6 +42,7 @@ class SuperElement:
     grounded: bool = False
     surface: Surface | None = None
     labels: tuple[str, ...] = ()
+    node_sets: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     provenance: Mapping[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -51,6 +53,9 @@ class SuperElement:
         for name, shape in shapes.items():
             if getattr(self, name).shape != shape:
                 raise PrsError(f"super-element: {name} has shape {getattr(self, name).shape}, expected {shape}")
+        strangers = [node for nodes in self.node_sets.values() for node in nodes if node not in self.nodes]
+        if strangers:
+            raise PrsError(f"super-element: a node set holds {strangers[0]}, which is no node of it")
         if len(set(self.nodes)) != k:
             raise PrsError(f"super-element: node names are not unique: {', '.join(self.nodes)}")
         if not self.labels:
@@ -84,7 +89,7 @@ class SuperElement:
         """(n, 6): the coordinates when the part moves rigidly by unit translations and rotations of its origin.
 
         The smallest coordinates for which ``motions @ phi = X(position)``, so zero on the modes of a
-        Craig-Bampton element. Motions that a node does not have (empty rows) are left out.
+        Craig-Bampton element. Motions that a node does not have are left out.
         """
         return self._rigid_body_modes
 
@@ -115,10 +120,24 @@ class SuperElement:
 
 def rigid_body_modes(motions: FloatArray, positions: FloatArray) -> FloatArray:
     """Smallest phi (n, 6) with ``motions @ phi = X(positions)`` in the least-squares sense; see SuperElement."""
-    rows = motions.reshape(-1, motions.shape[-1])
-    wanted = transfer(positions).reshape(-1, 6)
-    present = np.any(rows != 0.0, axis=1)
-    return np.asarray(np.linalg.lstsq(rows[present], wanted[present], rcond=1e-10)[0])
+    rows, wanted = present_motions(motions, transfer(positions))
+    return np.asarray(np.linalg.lstsq(rows, wanted, rcond=1e-10)[0])
+
+
+def present_motions(motions: FloatArray, wanted: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Rows (m, n) and right sides (m, c): the motions that each node has, and what is wanted (k, 6, c) of them.
+
+    A node with fewer than six independent motions (without rotations, or held along one axis) counts with those only.
+    """
+    rows, sides = [], []
+    for motion, side in zip(motions, wanted, strict=True):
+        if np.linalg.matrix_rank(motion, tol=1e-10 * np.max(np.abs(motion), initial=1e-300)) < 6:
+            axes, size, _ = np.linalg.svd(motion, full_matrices=False)
+            own = axes[:, size > 1e-10 * size[0]].T if size[0] > 0.0 else np.zeros((0, 6))
+            motion, side = own @ motion, own @ side
+        rows.append(motion)
+        sides.append(side)
+    return np.concatenate(rows), np.concatenate(sides)
 
 
 def node_labels(node: str) -> tuple[str, ...]:

@@ -32,6 +32,10 @@ class Surface:
     def recovery(self) -> NDArray[np.float32]:
         return self.source() if callable(self.source) else self.source
 
+    def through(self, projection: FloatArray) -> Surface:
+        """The surface under coordinates u' with u = P u', P (n, n')."""
+        return Surface(self.points, self.triangles, np.asarray(self.recovery @ projection, dtype=np.float32))
+
 
 def decimate(model: FiniteElementModel, basis: FloatArray, most_triangles: int = MOST_TRIANGLES) -> Surface | None:
     """The model's outer surface with about `most_triangles`; None for a model without one.

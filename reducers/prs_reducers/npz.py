@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import ClassVar
 
 from prs_model.description.schema import Section
-from prs_model.errors import PartFileError
+from prs_model.description.units import Units
 from prs_model.plugins import PartRequest, Reducer
 from prs_model.reduction import SuperElement
 
@@ -14,14 +15,17 @@ class NpzOptions(Section):
     """No options."""
 
 
-class NpzReducer(Reducer):
+class NpzReducer(Reducer[NpzOptions]):
     description: ClassVar[str] = "super-element stored by this program (.npz, SI)"
     Options: ClassVar[type[Section]] = NpzOptions
+    gives = "reduced"
+    units = "SI"
+    writes = (".npz",)
 
-    def read(self, part: PartRequest) -> SuperElement:
-        """Read the file. Raises PartFileError when it is missing, damaged, or asked to be in other units than SI."""
-        if part.source is None:
-            raise PartFileError(part.name, "no 'source' given, expected an .npz file")
-        if part.units is not None:
-            raise PartFileError(part.source, "stored super-elements are in SI: leave 'units' out")
-        return SuperElement.load(part.source)
+    def read(self, part: PartRequest[NpzOptions]) -> SuperElement:
+        """Read the file. Raises PartFileError when it is missing or damaged."""
+        return SuperElement.load(part.path)
+
+    def write(self, element: SuperElement, path: Path, units: Units) -> None:
+        """Write the element; such files are always in SI."""
+        element.save(path)

@@ -54,16 +54,15 @@ class RigidOptions(Section):
     nodes: dict[str, Point] = Field(min_length=1)
 
 
-class RigidReducer(Reducer):
+class RigidReducer(Reducer[RigidOptions]):
     description: ClassVar[str] = "rigid body from mass, inertia and named points (no file)"
     Options: ClassVar[type[Section]] = RigidOptions
-    needs_source: ClassVar[bool] = False
+    needs_source = False
+    gives = "reduced"
 
-    def read(self, part: PartRequest) -> SuperElement:
+    def read(self, part: PartRequest[RigidOptions]) -> SuperElement:
         """Six coordinates, the motion of the mass centre; node j moves by X(r_j - c). Inertia may be zero."""
         options = part.options
-        if not isinstance(options, RigidOptions):
-            raise TypeError(f"expected RigidOptions, got {type(options).__name__}")
         centre = np.array(options.centre, dtype=float)
         positions = np.array(list(options.nodes.values()), dtype=float)
         mass = np.zeros((6, 6))

@@ -31,7 +31,6 @@ PLAUSIBLE = {
     "E": (Dimension(force=1, length=-2), 1e6, 2e12, 2.1e11),
     "density": (Dimension(mass=1, length=-3), 10.0, 3e4, 7850.0),
 }
-SIZES = (1e-3, 1e2)  # m
 
 
 class MaterialOptions(Section):
@@ -71,24 +70,14 @@ class SolidOptions(Section):
         return self
 
 
-class SolidReducer(Reducer):
+class SolidReducer(Reducer[SolidOptions]):
     description: ClassVar[str] = "solid from a tetrahedral mesh (gmsh and others through meshio), ten-node elements"
     Options: ClassVar[type[Section]] = SolidOptions
+    gives = "full"
 
-    def read(self, part: PartRequest) -> FiniteElementModel:
+    def read(self, part: PartRequest[SolidOptions]) -> FiniteElementModel:
         """Assemble the mesh; named groups of it become node sets, surfaces with their areas as weights."""
-        if part.source is None or not isinstance(part.options, SolidOptions):
-            raise TypeError("a solid needs its source and SolidOptions")
-        if part.units is None:
-            raise PartFileError(
-                part.source, f"bodies.{part.name}.units: found nothing, expected the mesh's, such as 'mm-N-tonne-s'"
-            )
-        model = solid_model(read_mesh(part.source), part.options, Dimension(length=1).factor(part.units))
-        size, mass = float(np.ptp(model.coordinates, axis=0).max()), model.mass_properties().mass
-        logger.info("%s: %.4g kg, %.4g m long", part.name, mass, size)
-        if not SIZES[0] <= size <= SIZES[1]:
-            logger.warning("%s: is %.4g m long; are they those of the mesh?", part.name, size)
-        return model
+        return solid_model(read_mesh(part.path), part.options, Dimension(length=1).factor(part.file_units))
 
 
 def solid_model(mesh: TetrahedralMesh, options: SolidOptions, scale: float = 1.0) -> FiniteElementModel:

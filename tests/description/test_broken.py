@@ -40,6 +40,11 @@ def urdf(name: str, old: str, new: str, entry: str, *words: str, at: str = "") -
 
 RAM = "      nodes: {slide: [0, 0, 100], tool: [0, 0, 0]}\n    interfaces: {slide: {}, tool: {}}"
 Y_LIMIT = '<limit lower="-0.4" upper="0.4" effort="0" velocity="0"/>'
+SOLID_BRIDGE = """    reducer: solid
+    source: machine.yaml
+    options: {material: {E: 2.1e5, nu: 0.3, density: 7.85e-6}}
+"""
+
 BRIDGE = """    reducer: rigid
     options:
       mass: 80
@@ -168,8 +173,14 @@ PARTS = [
     yaml("option of a reducer without options", BRIDGE,
          "    reducer: npz\n    source: machine.yaml\n    options: {mass: 80}\n", "bodies.bridge.options.mass",
          "an unknown key, expected no entries", at="    options: {mass: 80}"),
-    yaml("inconsistent units", BRIDGE, "    reducer: npz\n    source: machine.yaml\n    units: mm\n",
+    yaml("inconsistent units", BRIDGE, SOLID_BRIDGE + "    units: mm\n",
          "bodies.bridge.units", "length-force-mass-time", at="    units: mm"),
+    yaml("no units", BRIDGE, SOLID_BRIDGE, "bodies.bridge.units", "the file does not say its units",
+         at="  bridge:\n    frame: bridge"),
+    yaml("units of a file in SI", BRIDGE, "    reducer: npz\n    source: machine.yaml\n    units: m-N-kg-s\n",
+         "bodies.bridge.units", "are in SI: remove 'units'", at="    units: m-N-kg-s"),
+    yaml("normal of no plane", *interface("{plane: {point: [0, 0, 0], normal: [0, 0, 0], tolerance: 1}}"),
+         "bodies.ram.interfaces.slide.plane.normal", "found a zero normal"),
     yaml("units of no file", "frame: bed\n    reducer", "frame: bed\n    units: mm\n    reducer", "bodies.bed.units",
          "found units, expected none"),
     yaml("modes of a rigid body", "frame: bed\n    reducer", "frame: bed\n    modes: 5\n    reducer",

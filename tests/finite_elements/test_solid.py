@@ -175,7 +175,7 @@ def test_forgotten_units_are_noticed(tmp_path, caplog):
         prs.reduce("solid", path, units="m-N-kg-s", material=STEEL | {"E": 2.1e5}, **ends)
     with caplog.at_level(logging.WARNING, logger="prs_model"):
         prs.reduce("solid", path, units="mm-N-tonne-s", material=STEEL, **ends)
-    assert "is 0.0002 m long; are they those of the mesh?" in caplog.text
+    assert "its nodes are 0.0002 m apart; check 'units'" in caplog.text
 
 
 def test_four_node_tetrahedra_are_taken_with_a_note(caplog):
@@ -202,7 +202,7 @@ def test_what_is_no_mesh_of_tetrahedra_is_refused(tmp_path):
         (tmp_path / "none.msh", "m-N-kg-s", "no such file"),
         (write(inverted, tmp_path / "inverted.msh"), "m-N-kg-s", "turned inside out"),
         (write(doubled, tmp_path / "doubled.msh"), "m-N-kg-s", "faces belong to more than two elements"),
-        (write(box(BEAM, (2, 1, 1)), tmp_path / "beam.msh"), None, "units: found nothing"),
+        (write(box(BEAM, (2, 1, 1)), tmp_path / "beam.msh"), None, "the file does not say its units: add 'units'"),
         (tmp_path / "beam.msh", "mm-N-kg-s", "not consistent"),
     ):
         with pytest.raises(prs.PartFileError, match=words):

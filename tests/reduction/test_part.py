@@ -169,12 +169,12 @@ def test_reduced_parts_take_the_names_of_interfaces(folder):
         ({"lower": {"node": "hing"}}, "interfaces.lower.node: found 'hing', .*did you mean 'hinge'"),
         ({"a": {"node": "tip"}, "b": {"node": "tip"}}, "node 'tip' is interface 'a' already"),
         ({"tip": {"node": "hinge"}}, "has the name of another retained node"),
-        ({"tip": {"set": "x1"}}, "already reduced: name one of its nodes"),
+        ({"tip": {"set": "x1"}}, "found node set 'x1', expected one of none"),
     )
     for interfaces, words in cases:
         with pytest.raises(prs.PartFileError, match=words):
             build_part("rod", body(**entries, interfaces=interfaces), ReductionDefaults(), folder)
-    with pytest.raises(prs.PartFileError, match="leave 'units' out"):
+    with pytest.raises(prs.PartFileError, match="takes SI only: leave 'units' out"):
         build_part("rod", body(**entries | {"units": "m-N-kg-s"}), ReductionDefaults(), folder)
 
 

@@ -7,6 +7,7 @@ import prs_model as prs
 from prs_model.description.schema import Body, ReductionDefaults
 from prs_model.description.units import Units
 from prs_model.reduction import build_part
+from prs_reducers.rigid import RigidOptions
 
 
 def test_mass_properties_and_motions(tmp_path):
@@ -24,8 +25,10 @@ def test_mass_properties_and_motions(tmp_path):
 
 
 def test_options_are_in_the_units_of_the_machine(tmp_path):
-    body = Body(frame="strut", reducer="rigid", options={"mass": 500.0, "nodes": {"end": (0.0, 0.0, 25.0)}})
-    part = build_part("strut_1", body, ReductionDefaults(), tmp_path, units=Units(length="mm", mass="g"))
+    entries = {"mass": 500.0, "nodes": {"end": (0.0, 0.0, 25.0)}}
+    units = Units(length="mm", mass="g")
+    options = RigidOptions.model_validate(entries, context={"units": units}).model_dump(exclude_unset=True)
+    part = build_part("strut_1", Body(frame="strut", reducer="rigid", options=options), ReductionDefaults(), tmp_path)
     assert part.mass_properties().mass == pytest.approx(0.5)
     assert part.positions[0] == pytest.approx([0.0, 0.0, 0.025])
 

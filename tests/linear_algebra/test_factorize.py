@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.sparse import csr_array, diags_array
 
-from prs_model.reduction.factorize import factorize
+from prs_model.linear_algebra import factorize
 
 MATRIX = csr_array(diags_array([-1.0, 2.5, -1.0], offsets=(-1, 0, 1), shape=(30, 30)))
 

@@ -1,0 +1,63 @@
+"""Text files of solvers: plain or gzipped, read whole, with a clear word about what is no text."""
+
+from __future__ import annotations
+
+import gzip
+import zlib
+from pathlib import Path
+
+from ..errors import PartFileError
+
+LARGEST_EXPANSION = 200  # times the size of a .gz file: text of numbers packs ten to thirty times
+
+
+def read_text(path: Path) -> str:
+    """The text of a file, unpacked where it is gzipped.
+
+    Raises PartFileError when there is no such file, it cannot be read or unpacked, is empty, or is no text.
+    """
+    data = read_bytes(path)
+    if b"\0" in data[:65536]:
+        raise PartFileError(path, "is a binary file, expected text")
+    if not data.strip():
+        raise PartFileError(path, "is empty")
+    return data.decode("latin-1")
+
+
+def read_bytes(path: Path) -> bytes:
+    """The content of a file, unpacked where it is gzipped. Raises PartFileError."""
+    try:
+        data = path.read_bytes()
+    except FileNotFoundError as error:
+        raise PartFileError(path, "there is no such file") from error
+    except OSError as error:
+        raise PartFileError(path, f"cannot be read: {error.strerror or error}") from error
+    if data[:2] != b"\x1f\x8b":
+        return data
+    limit = LARGEST_EXPANSION * len(data)
+    try:
+        with gzip.open(path) as packed:
+            text = packed.read(limit + 1)
+    except (OSError, EOFError, zlib.error) as error:
+        raise PartFileError(path, f"cannot be unpacked ({error}): truncated or damaged") from error
+    if len(text) > limit:
+        raise PartFileError(path, f"unpacks to more than {LARGEST_EXPANSION} times its size: damaged")
+    return text
+
+
+def number(text: str) -> float:
+    """A number as solvers write it: 1.5, 1.5D+02, 1.5+02 (Fortran), 1,5 (decimal comma). Raises ValueError."""
+    plain = text.strip().replace(",", ".").replace("D", "E").replace("d", "e")
+    try:
+        return float(plain)
+    except ValueError:
+        mantissa, sign, exponent = _split_exponent(plain)
+        return float(f"{mantissa}e{sign}{exponent}")
+
+
+def _split_exponent(text: str) -> tuple[str, str, str]:
+    for sign in "+-":
+        at = text.rfind(sign)
+        if at > 0 and text[at + 1 :].isdigit():
+            return text[:at], sign, text[at + 1 :]
+    raise ValueError(f"found '{text}', expected a number")

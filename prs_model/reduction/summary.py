@@ -1,0 +1,132 @@
+"""A part in a few numbers that its designer knows by heart, so that a wrong unit or a wrong file is seen at once."""
+
+from __future__ import annotations
+
+import logging
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.linalg import null_space
+
+from ..arrays import FloatArray
+from ..errors import PrsError
+from ..finite_elements import MassProperties
+from ..linear_algebra import lowest_modes
+from .super_element import SuperElement
+from .travelling import TravellingElement
+
+HEAVIEST = 2.3e4  # kg/m^3, osmium in the box around the nodes
+FASTEST = 2.0e4  # m/s: twice the length times the first free frequency; sound in diamond
+FREE = 1e-4  # of the first elastic frequency
+
+logger = logging.getLogger("prs_model")
+
+
+@dataclass(frozen=True, eq=False)
+class Summary:
+    """name; mass [kg], centre [m] and inertia [kg m^2] (None when grounded); size [m] of the box around the nodes.
+
+    nodes: positions [m] by name. fixed, free: first frequencies [Hz] with all nodes held and with none held, without
+    the zeros of rigid motion. surprises: sentences about figures that no part of that kind has.
+    """
+
+    name: str
+    size: FloatArray
+    nodes: dict[str, FloatArray]
+    coordinates: int
+    modes: int
+    grounded: bool
+    properties: MassProperties | None
+    fixed: FloatArray
+    free: FloatArray
+    surprises: tuple[str, ...]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain numbers, in SI, for JSON."""
+        known = self.properties
+        return {
+            "name": self.name,
+            "coordinates": self.coordinates,
+            "modes": self.modes,
+            "grounded": self.grounded,
+            "mass_kg": None if known is None else known.mass,
+            "centre_m": None if known is None else known.centre.tolist(),
+            "inertia_kg_m2": None if known is None else known.inertia.tolist(),
+            "size_m": self.size.tolist(),
+            "nodes_m": {name: position.tolist() for name, position in self.nodes.items()},
+            "fixed_frequencies_hz": self.fixed.tolist(),
+            "free_frequencies_hz": self.free.tolist(),
+            "surprises": list(self.surprises),
+        }
+
+
+def summarize(element: SuperElement, count: int = 6) -> Summary:
+    """The figures of an element, with up to `count` fixed and free frequencies. Raises PrsError for a singular one."""
+    known = None if element.grounded else element.mass_properties()
+    free, fixed = _frequencies(element, np.eye(element.size), count + 6), _fixed(element, count)
+    elastic = free[free > FREE * free.max(initial=0.0)] if free.size else free
+    points = element.positions if element.surface is None else np.vstack([element.positions, element.surface.points])
+    size = np.ptp(points, axis=0)
+    return Summary(
+        name=element.name,
+        size=size,
+        nodes=dict(zip(element.nodes, element.positions, strict=True)),
+        coordinates=element.size,
+        modes=element.n_modes,
+        grounded=element.grounded,
+        properties=known,
+        fixed=fixed[:count],
+        free=elastic[:count],
+        surprises=tuple(_surprises(known, size, elastic, seen=element.surface is not None)),
+    )
+
+
+def echo(element: SuperElement | TravellingElement, name: str) -> None:
+    """Log mass, size and first frequency in SI, and a warning for each figure that no part of that kind has."""
+    first = element if isinstance(element, SuperElement) else element.elements[0]
+    try:
+        summary = summarize(first, 1)
+    except PrsError as error:
+        logger.warning("%s: no frequencies: %s", name, error)
+        return
+    mass = "held to the ground" if summary.properties is None else f"{summary.properties.mass:.4g} kg"
+    size = " x ".join(f"{length:.4g}" for length in summary.size)
+    tone = (
+        f", first {'held' if first.grounded else 'free'} frequency {summary.free[0]:.4g} Hz"
+        if summary.free.size
+        else ""
+    )
+    logger.info("%s: %s, nodes in %s m%s", name, mass, size, tone)
+    for surprise in summary.surprises:
+        logger.warning("%s: %s", name, surprise)
+
+
+def _fixed(element: SuperElement, count: int) -> FloatArray:
+    """Frequencies with the motions of all nodes held."""
+    held = element.motions.reshape(-1, element.size)
+    inner = null_space(held / (np.linalg.norm(held) or 1.0), rcond=1e-10) if len(held) else np.eye(element.size)
+    return _frequencies(element, inner, count)
+
+
+def _frequencies(element: SuperElement, basis: FloatArray, count: int) -> FloatArray:
+    if basis.shape[1] == 0 or not np.any(element.mass):
+        return np.zeros(0)
+    mass, stiffness = basis.T @ element.mass @ basis, basis.T @ element.stiffness @ basis
+    values = lowest_modes((mass + mass.T) / 2.0, (stiffness + stiffness.T) / 2.0, count)[0]
+    return np.asarray(np.sqrt(np.maximum(values, 0.0)) / (2.0 * np.pi))
+
+
+def _surprises(known: MassProperties | None, size: FloatArray, free: FloatArray, *, seen: bool) -> list[str]:
+    """seen: the whole part is within `size`, not only its interface nodes."""
+    said, longest = [], float(size.max(initial=0.0))
+    advice = "check 'units'"
+    if known is not None and seen and np.all(size > 1e-3 * longest) and known.mass > HEAVIEST * np.prod(size):
+        said.append(f"{known.mass:.4g} kg within {np.prod(size):.3g} m^3 is denser than any metal; {advice}")
+    if free.size and known is not None and 2.0 * longest * free[0] > FASTEST:
+        said.append(
+            f"its first free frequency, {free[0]:.4g} Hz, is too high for a part {longest:.4g} m long; {advice}"
+        )
+    if longest > 100.0 or 0.0 < longest < 1e-3:
+        said.append(f"its nodes are {longest:.4g} m apart; {advice}")
+    return said
