@@ -1,0 +1,156 @@
+"""Matrices as Matrix Market files with a table of what their rows are: the plain case, and a way out."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+from typing import ClassVar
+
+import numpy as np
+
+from prs_model.arrays import FloatArray
+from prs_model.description.schema import Section
+from prs_model.description.units import Units
+from prs_model.errors import PartFileError
+from prs_model.finite_elements import FiniteElementModel
+from prs_model.part_files import MODE, LabelledMatrices, full_model, super_element
+from prs_model.part_files.labelled import ENERGY, INERTIA, LENGTH, si_scales
+from prs_model.plugins import PartRequest, Reducer
+from prs_model.reduction import SuperElement
+from prs_model.reduction.storage import whole
+
+from .dof_table import DofTable, read_dof_table, write_dof_table
+from .mtx import read_mtx, write_mtx
+
+
+class MatrixMarketOptions(Section):
+    """Files beside the stiffness, relative to its folder; default ``<stem>_mass.mtx`` and ``<stem>_dofs.txt``.
+
+    reduced: the matrices come from a condensation though no modes are among their rows.
+    """
+
+    mass: str | None = None
+    dofs: str | None = None
+    reduced: bool = False
+
+
+class MatrixMarketReducer(Reducer[MatrixMarketOptions]):
+    """K, M and a table of their rows (see `dof_table`). What a permuted row does shows in the gate only."""
+
+    description: ClassVar[str] = "stiffness and mass as Matrix Market files, with a table of their rows"
+    Options: ClassVar[type[Section]] = MatrixMarketOptions
+    gives = "either"
+    units = "asked"
+    writes = (".mtx",)
+
+    def read(self, part: PartRequest[MatrixMarketOptions]) -> FiniteElementModel | SuperElement:
+        """A super-element where the table has modes or says so, full matrices otherwise. Raises PartFileError."""
+        stiffness, mass, dofs = self.files(part)
+        table = read_dof_table(dofs)
+        table.check_units(part.file_units)
+        if table.places is None:
+            raise PartFileError(dofs, "has no coordinates: write x, y, z after the component")
+        matrices = LabelledMatrices(
+            source=stiffness,
+            stiffness=read_mtx(stiffness, len(table.nodes)),
+            mass=read_mtx(mass, len(table.nodes)),
+            nodes=table.nodes,
+            components=table.components,
+        )
+        if table.is_reduced or part.options.reduced:
+            return super_element(
+                matrices,
+                table.places,
+                part.file_units,
+                modes=table.modes,
+                node_sets=table.node_sets,
+            )
+        sets = {name: table.places.places(np.array(nodes), dofs) for name, nodes in table.node_sets.items()}
+        return full_model(matrices, table.places, part.file_units, node_sets=sets)
+
+    def files(self, part: PartRequest[MatrixMarketOptions]) -> tuple[Path, ...]:
+        """Stiffness, mass, table."""
+        mass, dofs = companions(part.path)
+        given = part.options
+        return (
+            part.path,
+            part.path.parent / given.mass if given.mass else mass,
+            part.path.parent / given.dofs if given.dofs else dofs,
+        )
+
+    def write(self, element: SuperElement, path: Path, units: Units) -> None:
+        """Write ``part.mtx``, ``part_mass.mtx`` and ``part_dofs.txt``; each appears whole or not at all.
+
+        Numbers have 17 digits, so in SI they come back as they were. The outer surface is left out. Raises
+        PartFileError for an element whose coordinates are not the motions of nodes along the body's axes and modes.
+        """
+        nodes, components = coordinates_of(element, path)
+        stiffness, mass = in_file_units(element, np.array(components), units)
+        system = f"{units.length}-{units.force}-{units.mass}-s"
+        facts = {"reduced": "true"}
+        if element.provenance.get("modes") == "fixed-interface":
+            facts["modes"] = "fixed-interface"
+        table = DofTable(
+            path,
+            np.array(nodes),
+            np.array(components),
+            None,
+            facts,
+            {k: tuple(v) for k, v in element.node_sets.items()},
+        )
+        positions = dict(zip(element.nodes, element.positions / LENGTH.factor(units), strict=True))
+        held = ("held to the ground: say 'grounded: true'",) if element.grounded else ()
+        texts = (
+            _mtx_text(mass, f"mass of {element.name}, {system}"),
+            write_dof_table(table, system, positions, (f"rows of {element.name}", *held)),
+            _mtx_text(stiffness, f"stiffness of {element.name}, {system}"),
+        )
+        try:
+            for file, text in zip((*companions(path), path), texts, strict=True):
+                with whole(file) as opened:
+                    opened.write(text.encode())
+        except OSError as error:
+            raise PartFileError(path, f"cannot be written: {error.strerror or error}") from error
+
+
+def companions(path: Path) -> tuple[Path, Path]:
+    """Default names of the mass and of the table beside a stiffness."""
+    stem = Path(path.name.removesuffix(".gz")).stem
+    return path.with_name(f"{stem}_mass.mtx"), path.with_name(f"{stem}_dofs.txt")
+
+
+def coordinates_of(element: SuperElement, path: Path) -> tuple[list[str], list[int]]:
+    """Node and component of each coordinate, of a mode its number and MODE. Raises PartFileError when it has none."""
+    first_mode = element.size - element.n_modes
+    nodes, components = [], []
+    for column in range(element.size):
+        moved = np.argwhere(element.motions[:, :, column])
+        if column >= first_mode and len(moved) == 0:
+            nodes.append(str(column - first_mode + 1))
+            components.append(MODE)
+        elif column < first_mode and len(moved) == 1 and element.motions[*moved[0], column] == 1.0:
+            nodes.append(element.nodes[moved[0, 0]])
+            components.append(int(moved[0, 1]))
+        else:
+            raise PartFileError(
+                path,
+                f"cannot hold {element.name}: coordinate '{element.labels[column]}' is not the motion of one node "
+                "along one axis of the body; store it as .npz",
+            )
+    lost = [node for node in element.nodes if node not in nodes]
+    if lost:
+        raise PartFileError(path, f"cannot hold {element.name}: node '{lost[0]}' has no coordinate; store it as .npz")
+    return nodes, components
+
+
+def in_file_units(element: SuperElement, components: np.ndarray, units: Units) -> tuple[FloatArray, FloatArray]:
+    """Stiffness and mass in `units`; modal coordinates stay mass-normalised."""
+    scales = si_scales(components, units)
+    square = np.outer(scales, scales)
+    return element.stiffness * square / ENERGY.factor(units), element.mass * square / INERTIA.factor(units)
+
+
+def _mtx_text(matrix: FloatArray, comment: str) -> str:
+    file = io.StringIO()
+    write_mtx(file, matrix, " ".join(comment.split()))
+    return file.getvalue()
