@@ -14,6 +14,8 @@ import numpy as np
 from prs_model.arrays import FloatArray, IntArray
 from prs_model.errors import PartFileError
 
+from .gmsh_labels import node_labels
+
 Named = Mapping[str, list[tuple[int, IntArray]]]
 """For each group of the file: the cell blocks it is made of, and which of their cells."""
 
@@ -24,7 +26,7 @@ DIMENSIONS = {"vertex": 0, "line": 1, "triangle": 2, "quad": 2, "tetra": 3, "hex
 
 @dataclass(frozen=True, eq=False)
 class TetrahedralMesh:
-    """points (n, 3) in the file's unit, all of them used. meshio keeps no labels of nodes, so there are none.
+    """points (n, 3) in the file's unit, all of them used. labels (n,): gmsh's tags of them, None for other formats.
 
     elements (e, 4 or 10) in VTK's order. groups: the nodes of each named group as an array of any shape, one row per
     face for those in `surfaces`; volumes: element indices of the groups made of elements.
@@ -36,29 +38,32 @@ class TetrahedralMesh:
     groups: Mapping[str, IntArray]
     surfaces: frozenset[str]
     volumes: Mapping[str, IntArray]
+    labels: IntArray | None = None
 
 
 def read_mesh(path: Path) -> TetrahedralMesh:
     """Read a mesh file. Raises PartFileError when meshio cannot, or it is not one of tetrahedra."""
-    mesh = _read(path)
+    mesh = read_cells(path)
     solid = _solid_blocks(mesh, path)
     used, compact = np.unique(np.concatenate([mesh.cells[block].data for block in solid]), return_inverse=True)
     place = np.full(len(mesh.points), -1)
     place[used] = np.arange(len(used))
     elements = compact.reshape(-1, mesh.cells[solid[0]].data.shape[1])
-    named = _named(mesh)
+    named = named_groups(mesh)
+    labels = node_labels(path, mesh.points) if path.suffix.lower() == ".msh" else None
     surfaces = frozenset(name for name, parts in named.items() if _kinds(mesh, parts) in ({"triangle6"}, {"triangle"}))
     return TetrahedralMesh(
         source=path,
         points=np.asarray(mesh.points, dtype=float)[used],
         elements=elements,
-        groups=_node_groups(mesh, named, place, surfaces),
+        groups=node_groups(mesh, named, place, surfaces),
         surfaces=surfaces,
         volumes=_volumes(mesh, named, solid),
+        labels=None if labels is None else labels[used],
     )
 
 
-def _read(path: Path) -> Any:
+def read_cells(path: Path) -> Any:
     """The file as meshio has it, which prints and exits where we raise."""
     import meshio
 
@@ -87,7 +92,7 @@ def _solid_blocks(mesh: Any, path: Path) -> list[int]:
     return [index for index, block in enumerate(mesh.cells) if block.type == kinds[0]]
 
 
-def _named(mesh: Any) -> Named:
+def named_groups(mesh: Any) -> Named:
     """Groups of cells: meshio's cell sets, and gmsh's physical groups where the format has them as tags only."""
     named: dict[str, list[tuple[int, IntArray]]] = {}
     for name, by_block in (mesh.cell_sets or {}).items():
@@ -114,7 +119,7 @@ def _dimension(kind: str) -> int:
     return DIMENSIONS.get(kind.rstrip("0123456789"), -1)
 
 
-def _node_groups(mesh: Any, named: Named, place: IntArray, surfaces: frozenset[str]) -> dict[str, IntArray]:
+def node_groups(mesh: Any, named: Named, place: IntArray, surfaces: frozenset[str]) -> dict[str, IntArray]:
     """Nodes of every group that belong to the solid; a face counts when all of its nodes do."""
     groups = {}
     for name, parts in named.items():

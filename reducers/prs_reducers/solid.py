@@ -101,6 +101,7 @@ def solid_model(mesh: TetrahedralMesh, options: SolidOptions, scale: float = 1.0
         mass=mass,
         coordinates=points,
         dofs=np.column_stack([np.repeat(nodes, 3), np.tile(np.arange(3), len(points))]),
+        node_ids=mesh.labels,
         node_sets={name: np.unique(cells) for name, cells in mesh.groups.items()},
         set_weights={
             name: face_areas(points, cells)[np.unique(cells)]

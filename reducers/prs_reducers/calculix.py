@@ -1,0 +1,140 @@
+"""Full matrices of CalculiX, as ``*FREQUENCY, SOLVER=MATRIXSTORAGE`` writes them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import ClassVar
+
+import numpy as np
+from scipy.sparse import csr_array
+
+from prs_model.arrays import FloatArray, IntArray
+from prs_model.description.schema import Section
+from prs_model.errors import PartFileError
+from prs_model.finite_elements import FiniteElementModel
+from prs_model.part_files import LabelledMatrices, read_text
+from prs_model.plugins import PartRequest, Reducer
+
+from .labelled_mesh import LabelledMesh
+from .meshed_part import meshed_model, missing_rows, sentence_of
+from .number_table import read_table, whole_numbers
+from .part_mesh import mesh_files, read_part_mesh
+
+SUBSTRUCTURE = (
+    "output of *SUBSTRUCTURE GENERATE: CalculiX (2.20 at least) writes the stiffness of the retained nodes with all "
+    "others held there, not the condensed one, and no mass; use *FREQUENCY, SOLVER=MATRIXSTORAGE instead and name "
+    "the .sti file that it writes"
+)
+
+
+class CalculixOptions(Section):
+    """mesh: the deck (.inp) or gmsh mesh (.msh) beside the source; by default ``<source>.inp``."""
+
+    mesh: str | None = None
+
+
+class CalculixReducer(Reducer[CalculixOptions]):
+    description: ClassVar[str] = (
+        "full matrices of CalculiX (.sti, .mas, .dof, also gzipped) with their mesh (.inp, .msh)"
+    )
+    Options: ClassVar[type[Section]] = CalculixOptions
+    gives = "full"
+    units = "asked"
+
+    def read(self, part: PartRequest[CalculixOptions]) -> FiniteElementModel:
+        """Read the matrices and their mesh, whose sets become node sets.
+
+        Motions held by *BOUNDARY have no rows; such a part is grounded. Of a grounded part, a row in a wrong place is
+        seen unless it stands beside a held node. Raises PartFileError.
+        """
+        stiffness, mass, dof, mesh = _paths(part)
+        nodes, components = _labels(dof)
+        rows, columns, of_k = _triangle(stiffness, len(nodes))
+        mass_rows, mass_columns, of_m = _triangle(mass, len(nodes))
+        if not (np.array_equal(rows, mass_rows) and np.array_equal(columns, mass_columns)):
+            raise PartFileError(mass, f"its entries are not at the places of those in {stiffness.name}: of another run")
+        k, m = (_mirrored(len(nodes), rows, columns, values) for values in (of_k, of_m))
+        matrices = LabelledMatrices(stiffness, k, m, nodes, components)
+        labelled = read_part_mesh(mesh)
+        _check_held(matrices, labelled)
+        return meshed_model(matrices, labelled, part.file_units, {"mesh": mesh.name})
+
+    def files(self, part: PartRequest[CalculixOptions]) -> tuple[Path, ...]:
+        stiffness, mass, dof, mesh = _paths(part)
+        return stiffness, mass, dof, *mesh_files(mesh)
+
+
+def _paths(part: PartRequest[CalculixOptions]) -> tuple[Path, Path, Path, Path]:
+    """Stiffness, mass, rows and mesh: companions are gzipped or not, whatever the source is."""
+    source = part.path
+    if source.suffix == ".mtx":
+        raise PartFileError(source, f"expected .sti or .sti.gz; an .mtx file of CalculiX is {SUBSTRUCTURE}")
+    stem = source.name.removesuffix(".gz")
+    if stem == source.name and source.suffix not in (".sti", ".mas", ".dof"):
+        stem += ".sti"
+    if not stem.endswith((".sti", ".mas", ".dof")):
+        raise PartFileError(source, "expected .sti or .sti.gz, the stiffness that SOLVER=MATRIXSTORAGE writes")
+    stem = stem[:-4]
+    stiffness, mass, dof = (_companion(source, stem + suffix) for suffix in (".sti", ".mas", ".dof"))
+    return stiffness, mass, dof, source.parent / (part.options.mesh or f"{stem}.inp")
+
+
+def _companion(source: Path, name: str) -> Path:
+    """The file of that name beside the source; the source itself, or packed as the source is, where there are two."""
+    both = [source.with_name(name), source.with_name(f"{name}.gz")]
+    if source.suffix == ".gz":
+        both.reverse()
+    return next((path for path in both if path.is_file()), both[0])
+
+
+def _labels(path: Path) -> tuple[IntArray, IntArray]:
+    """Node and component (0..2) of each row, from lines such as ``17.3``."""
+    text = read_text(path)
+    rows = whole_numbers(read_table(text, path, 2, separator="."), path, "node.component")
+    nodes, components = rows.T
+    wrong = np.flatnonzero((components < 1) | (components > 3) | (nodes < 1))
+    if len(wrong):
+        found = ".".join(map(str, rows[wrong[0]]))
+        raise PartFileError(path, f"row {wrong[0] + 1} is '{found}', expected node.1 to node.3, a displacement")
+    return nodes, components - 1
+
+
+def _triangle(path: Path, size: int) -> tuple[IntArray, IntArray, FloatArray]:
+    """Rows, columns and values of an upper triangle, which stands there column by column, each with its diagonal."""
+    text = read_text(path)
+    if "*USER ELEMENT" in text[:1000]:
+        raise PartFileError(path, f"this is {SUBSTRUCTURE}")
+    table = read_table(text, path, 3)
+    rows, columns = whole_numbers(table[:, :2], path, "row and column").T
+    last = (int(rows[-1]), int(columns[-1]))
+    if last != (size, size):
+        raise PartFileError(
+            path, f"its last entry is {last[0]} {last[1]}, expected {size} {size}, as many as rows in .dof: truncated"
+        )
+    steps = np.diff(columns * (size + 1) + rows)
+    ends = rows[np.append(np.diff(columns) > 0, True)]
+    if np.any(steps <= 0) or np.any(rows < 1) or not np.array_equal(ends, np.arange(1, size + 1)):
+        raise PartFileError(path, "not an upper triangle column by column, each down to its diagonal: damaged")
+    return rows - 1, columns - 1, table[:, 2]
+
+
+def _mirrored(size: int, rows: IntArray, columns: IntArray, values: FloatArray) -> csr_array:
+    upper = csr_array((values, (rows, columns)), shape=(size, size))
+    inner = rows != columns
+    return csr_array(upper + csr_array((values[inner], (columns[inner], rows[inner])), shape=(size, size)))
+
+
+def _check_held(matrices: LabelledMatrices, mesh: LabelledMesh) -> None:
+    """Every motion without a row is one that the deck holds."""
+    missing = missing_rows(matrices, mesh)
+    if mesh.held is None or not len(missing):
+        return
+    held = set(map(tuple, mesh.held.tolist()))
+    loose = np.array([pair for pair in missing.tolist() if tuple(pair) not in held], dtype=np.int64).reshape(-1, 2)
+    if len(loose):
+        raise PartFileError(
+            matrices.source,
+            f"{len(loose)} motions of the mesh have no rows, and no *BOUNDARY of {mesh.table.source.name} holds them: "
+            f"{sentence_of(loose, mesh)}; matrices of another run, or motions tied by *EQUATION, *MPC, *RIGID BODY or "
+            "*TRANSFORM with *BOUNDARY, which are not read: leave them out and let the interfaces tie them",
+        )

@@ -1,0 +1,119 @@
+"""Labelled matrices and a labelled mesh made one finite-element model, as far as both agree."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+from scipy.sparse import csr_array
+
+from prs_model.arrays import BoolArray, FloatArray, IntArray
+from prs_model.description.units import Dimension, Units
+from prs_model.errors import PartFileError, short
+from prs_model.finite_elements import FiniteElementModel
+from prs_model.part_files import LabelledMatrices, full_model
+
+from .labelled_mesh import LabelledMesh
+from .solid_faces import area_shares, outer_surface
+
+RESISTING = 1e-6
+"""A row's force in rigid motion, over the sum of its terms' sizes, that is more than round-off of the file's digits."""
+
+
+def meshed_model(
+    matrices: LabelledMatrices, mesh: LabelledMesh, units: Units, provenance: Mapping[str, str]
+) -> FiniteElementModel:
+    """The model with the mesh's sets, areas and outer surface, in SI.
+
+    Raises PartFileError when nodes lack coordinates, a row of a solid has no stiffness or no mass, or, in a part with
+    held nodes, rigid motion costs energy where no held node is near.
+    """
+    table, square = mesh.table, Dimension(length=2).factor(units)
+    triangles, areas = outer_surface(mesh.solids, table.coordinates)
+    weights = {
+        name: sum((area_shares(*face, table.coordinates) for face in faces), np.zeros(len(areas)))
+        for name, faces in mesh.surfaces.items()
+        if name not in mesh.node_sets
+    }
+    surfaces = {name: np.flatnonzero(shares) for name, shares in weights.items()}
+    model = full_model(
+        matrices,
+        table,
+        units,
+        node_sets={**mesh.node_sets, **surfaces},
+        triangles=triangles if len(triangles) else None,
+        provenance={"source": str(matrices.source), **provenance},
+    )
+    _check_complete(model, mesh, matrices)
+    _check_rows_far_from_held(model, mesh, matrices)
+    return replace(
+        model,
+        areas=areas * square if len(triangles) else None,
+        set_weights={name: weights[name][nodes] * square for name, nodes in surfaces.items()},
+    )
+
+
+def missing_rows(matrices: LabelledMatrices, mesh: LabelledMesh) -> IntArray:
+    """(node, component) pairs (m, 2) of solid elements that have no row: motions that are held, or a truncated file."""
+    places = mesh.table.places(matrices.nodes, matrices.source)
+    there = np.zeros((len(mesh.table.labels), 6), dtype=bool)
+    there[places, matrices.components] = True
+    absent = ~there[mesh.in_solids, :3]
+    rows, components = np.nonzero(absent)
+    return np.column_stack([mesh.in_solids[rows], components])
+
+
+def _check_complete(model: FiniteElementModel, mesh: LabelledMesh, matrices: LabelledMatrices) -> None:
+    solid = np.zeros(len(model.coordinates), dtype=bool)
+    solid[mesh.in_solids] = True
+    of_solid = solid[model.dofs[:, 0]] & (model.dofs[:, 1] < 3)
+    for name, matrix in (("stiffness", model.stiffness), ("mass", model.mass)):
+        empty = np.flatnonzero(of_solid & (matrix.diagonal() <= 0.0))
+        if len(empty):
+            label = mesh.table.labels[model.dofs[empty[0], 0]]
+            raise PartFileError(
+                matrices.source,
+                f"{len(empty)} rows of solid elements have no {name}, the first at node {label}: the {name} file is "
+                "truncated, or of another part",
+            )
+
+
+def _check_rows_far_from_held(model: FiniteElementModel, mesh: LabelledMesh, matrices: LabelledMatrices) -> None:
+    """In rigid motion only nodes in an element with a held node resist; a row elsewhere that does is a wrong row."""
+    near = _beside(mesh, missing_rows(matrices, mesh)[:, 0])
+    if not np.any(near):
+        return
+    near[mesh.others] = True
+    rows = np.flatnonzero(~near[model.dofs[:, 0]])
+    figures = _resistance(model)[rows]
+    if np.any(figures > RESISTING):
+        worst = int(rows[np.argmax(figures)])
+        label, axis = mesh.table.labels[model.dofs[worst, 0]], "xyz"[model.dofs[worst, 1] % 3]
+        raise PartFileError(
+            matrices.source,
+            f"{np.count_nonzero(figures > RESISTING)} rows resist rigid motion though no held node is near (most of "
+            f"all node {label} {axis}): rows in another order, a damaged number, or the mesh of another part",
+        )
+
+
+def _beside(mesh: LabelledMesh, held: IntArray) -> BoolArray:
+    """Nodes that share an element with a held one."""
+    is_held, near = np.zeros((2, len(mesh.table.labels)), dtype=bool)
+    is_held[held] = True
+    for nodes in mesh.solids.values():
+        near[nodes[np.any(is_held[nodes], axis=1)]] = True
+    return near
+
+
+def _resistance(model: FiniteElementModel) -> FloatArray:
+    """(n,): |K phi| over |K| |phi|, term by term, the largest of six rigid motions."""
+    phi = model.rigid_body_modes(about=model.coordinates.mean(axis=0))
+    size = csr_array(abs(model.stiffness)) @ abs(phi)
+    return np.asarray(np.max(np.abs(model.stiffness @ phi) / np.where(size > 0.0, size, 1.0), axis=1))
+
+
+def sentence_of(pairs: IntArray, mesh: LabelledMesh) -> str:
+    """The first few of (node, component) pairs, as ``10 uy, 14 uz ..``."""
+    names = [f"{mesh.table.labels[node]} u{'xyz'[component]}" for node, component in pairs[:4]]
+    return short(", ".join(names)) + (" .." if len(pairs) > 4 else "")
