@@ -1,52 +1,15 @@
 """What a user installs: a wheel made from the sdist, alone in an environment, and third-party plug-ins beside it."""
 
 import json
-import os
 import shutil
-import subprocess
-import sys
 import zipfile
 from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[1]
+from tests.distributions import build, install, run
+
 GANTRY = Path(__file__).parent / "description" / "small_machine"
-
-pytest.importorskip("build", reason="the package `build` makes the distributions")
-pytest.importorskip("hatchling", reason="the build backend")
-
-
-def run(*command: str | Path, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
-    """Run a command that sees nothing of the checkout: what PYTHONPATH adds would hide what is not installed."""
-    environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
-    words = [str(word) for word in command]
-    return subprocess.run(words, cwd=cwd, capture_output=True, text=True, check=False, env=environment)
-
-
-def build(project: Path, out: Path) -> Path:
-    """The wheel of a project, made from its sdist."""
-    done = run(sys.executable, "-m", "build", "--no-isolation", "--outdir", out, project)
-    assert done.returncode == 0, done.stdout + done.stderr
-    return next(out.glob("*.whl"))
-
-
-@pytest.fixture(scope="module")
-def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return build(ROOT, tmp_path_factory.mktemp("dist"))
-
-
-@pytest.fixture(scope="module")
-def environment(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The scripts' folder of an environment with the wheel in it; its dependencies are those of the running one."""
-    folder = tmp_path_factory.mktemp("environment")
-    assert run(sys.executable, "-m", "venv", folder).returncode == 0
-    scripts = folder / "bin"
-    done = run(scripts / "python", "-m", "pip", "install", "--quiet", "--no-deps", "--no-index", wheel)
-    assert done.returncode == 0, done.stderr
-    site = Path(run(scripts / "python", "-c", "import sysconfig; print(sysconfig.get_path('purelib'))").stdout.strip())
-    (site / "dependencies.pth").write_text("\n".join(path for path in sys.path if "site-packages" in path) + "\n")
-    return scripts
 
 
 def test_the_wheel_holds_the_packages_and_their_data_only(wheel: Path) -> None:
@@ -85,9 +48,7 @@ def test_a_third_party_adds_a_reducer_and_a_machine(environment: Path, tmp_path:
         )
     )
     (project / "pyproject.toml").write_text(PROJECT)
-    wheel = build(project, tmp_path / "dist")
-    done = run(environment / "python", "-m", "pip", "install", "--quiet", "--no-deps", "--no-index", wheel)
-    assert done.returncode == 0, done.stderr
+    install(environment, build(project, tmp_path / "dist"))
 
     reducers = json.loads(run(environment / "prs-model", "reducers", "--json", cwd=tmp_path).stdout)["reducers"]
     assert {"name": "brick", "description": "a rigid brick", "problem": None} in reducers

@@ -23,7 +23,8 @@ SAME = 1e-8  # of the receptances
 
 Result = Literal["refused", "same", "noticed", "unseen", "wrong", "crash", "hang", "memory"]
 FAULTS: tuple[Result, ...] = ("wrong", "crash", "hang", "memory")
-UNITS = ("m-N-kg-s", "mm-N-tonne-s", "in-lbf-slinch-s")
+UNITS, UNSAID = ("m-N-kg-s", "mm-N-tonne-s", "in-lbf-slinch-s"), "units not said"
+INCHES = {"*: units in-lbf-slinch-s": "in inches the part is as plausible; its mass and size are said in SI"}
 
 
 @dataclass(frozen=True)
@@ -107,7 +108,8 @@ def _trials(whole: Sample, folder: Path, places: int) -> Iterator[_Trial]:
             yield _Trial(file.name, "that of another part", _with(whole, root, folder, file, other))
     for units in (None, *UNITS):
         if units != whole.units:
-            yield _Trial(whole.path.name, f"units {units or 'not said'}", replace(whole, units=units))
+            damage = UNSAID if units is None else f"units {units}"
+            yield _Trial(whole.path.name, damage, replace(whole, units=units))
 
 
 def _with(whole: Sample, root: Path, folder: Path, file: Path, content: bytes | None) -> Sample:
@@ -150,7 +152,7 @@ def _plain(sample: Sample) -> dict[str, Any]:
 def _outcome(trial: _Trial, answer: Mapping[str, Any], sample: Sample) -> Outcome:
     result, message, difference = answer["result"], answer["message"], float(answer.get("difference", 0.0))
     if result == "read":
-        result, message = _as_read(trial.name, difference, answer["warnings"], sample.unseen)
+        result, message = _as_read(trial.name, difference, answer["warnings"], INCHES | dict(sample.unseen))
     message = " ".join(message.replace(f"{Path(trial.sample.path).parent}{os.sep}", "").split())
     return Outcome(trial.file, trial.damage, result, message, float(answer["seconds"]), difference)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gzip
 import random
+import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
@@ -11,6 +12,8 @@ from functools import partial
 ANOTHER_KIND = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\x10\0\0\0\x10\x08\x02\0\0\0\x90\x91h6" + bytes(range(256))
 PROSE = b"Dear colleague,\n\nattached is the part you asked for. It weighs about 12 kg.\n\nKind regards\n"
 GARBAGE = b"\n\xff\xfe 17 garbage \x07\n 1 2 3\n"
+
+LEADING_DIGIT = re.compile(rb"(?<![0-9.eEdD])(?<![eEdD][+-])[1-9]")
 
 Change = Callable[[bytes, random.Random], bytes]
 
@@ -57,8 +60,8 @@ def flip_bit(data: bytes, chance: random.Random) -> bytes:
 
 
 def another_digit(data: bytes, chance: random.Random) -> bytes:
-    at = chance.choice([i for i, byte in enumerate(data) if 48 <= byte <= 57] or [0])
-    digit = chance.choice([byte for byte in range(48, 58) if byte != data[at]])
+    at = chance.choice([found.start() for found in LEADING_DIGIT.finditer(data)] or [0])
+    digit = chance.choice([byte for byte in b"123456789" if byte != data[at]])
     return data[:at] + bytes([digit]) + data[at + 1 :]
 
 
