@@ -82,10 +82,16 @@ class Spring(Section):
         """
         held = [node for node in self.between if node != GROUND]
         places = np.array([nodes[node] for node in held])
-        at = places.mean(axis=0) if self.at is None else np.array(self.at, dtype=float)
         turn = np.kron(np.eye(2), self._axes(places).T)
         sign = {self.between[0]: -1.0, self.between[1]: 1.0}
-        return {node: sign[node] * turn @ transfer(at - nodes[node]) for node in held}
+        arms = self._arms(places)
+        return {node: sign[node] * turn @ transfer(arm) for node, arm in zip(held, arms, strict=True)}
+
+    def _arms(self, places: FloatArray) -> FloatArray:
+        """From each node to where the spring acts; an axial one acts all along its line, so at the nodes."""
+        if self.at is not None:
+            return np.array(self.at, dtype=float) - places
+        return np.zeros_like(places) if self.axial is not None else places.mean(axis=0) - places
 
     def _axes(self, places: FloatArray) -> FloatArray:
         if self.along is not None:
