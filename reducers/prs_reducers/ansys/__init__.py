@@ -1,0 +1,110 @@
+"""ANSYS Mechanical (MAPDL): full matrices of a part, from its .full file or exported by APDL Math."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array, csr_array
+
+from prs_model.description.schema import Section
+from prs_model.errors import PartFileError
+from prs_model.finite_elements import FiniteElementModel
+from prs_model.part_files import LabelledMatrices, full_model, read_apart, read_text
+from prs_model.plugins import PartRequest, Reducer
+
+from ..mtx import is_mtx, parse_mtx
+from .full_file import is_full, load_full
+from .node_list import read_nodes
+from .row_map import read_row_map
+
+__all__ = ["AnsysOptions", "AnsysReducer", "load_full"]
+
+
+class AnsysOptions(Section):
+    """Files beside the source, relative to its folder.
+
+    coordinates: where the nodes are, which no matrix file says: an archive (.cdb), a listing of NLIST, or a node table
+    of Workbench. mass, map: for exported matrices, the mass and what the rows are (the BACK vector as MMF, or HBMAT's
+    .mapping).
+    """
+
+    coordinates: str
+    mass: str | None = None
+    map: str | None = None
+
+
+class AnsysReducer(Reducer[AnsysOptions]):
+    """Source: a .full file (K, M and rows in one), or a stiffness of ``*EXPORT,..,MMF`` or HBMAT with `mass` and `map`.
+
+    DOFs are in the nodes' own axes, which are turned to the body's where `coordinates` has their angles. DOFs that were
+    constrained have no rows: such a part is held to the ground.
+    """
+
+    description: ClassVar[str] = "ANSYS: .full, or Matrix Market and Harwell-Boeing exports, with a list of nodes"
+    Options: ClassVar[type[Section]] = AnsysOptions
+    gives = "full"
+    units = "asked"
+
+    def read(self, part: PartRequest[AnsysOptions]) -> FiniteElementModel:
+        """The full matrices; node components of an archive are node sets. Raises PartFileError."""
+        table, components = read_nodes(part.path.parent / part.options.coordinates)
+        matrices = load_full(part.path) if is_full(part.path) else self._exported(part)
+        sets = {name: table.places(np.array(nodes), table.source) for name, nodes in components.items()}
+        return full_model(matrices, table, part.file_units, node_sets=sets)
+
+    def files(self, part: PartRequest[AnsysOptions]) -> tuple[Path, ...]:
+        """The source, then the files that the options name."""
+        named = (part.options.mass, part.options.map, part.options.coordinates)
+        return (part.path, *(part.path.parent / name for name in named if name is not None))
+
+    def _exported(self, part: PartRequest[AnsysOptions]) -> LabelledMatrices:
+        options, folder = part.options, part.path.parent
+        if options.mass is None or options.map is None:
+            raise PartFileError(part.path, "is an exported matrix: name 'mass' and 'map' in its options too")
+        stiffness = read_matrix(part.path)
+        n = stiffness.shape[0]
+        mass = read_matrix(folder / options.mass)
+        nodes, components = read_row_map(folder / options.map, n)
+        return LabelledMatrices(part.path, stiffness, mass, nodes, components)
+
+
+def read_matrix(path: Path) -> csr_array:
+    """A symmetric matrix in Matrix Market or Harwell-Boeing format, both triangles filled. Raises PartFileError."""
+    text = read_text(path)
+    if is_mtx(text):
+        return parse_mtx(text, path)
+    found = read_apart(f"{__name__}:read_harwell_boeing", path)
+    n = int(found["size"])
+    return csr_array(coo_array((found["data"], (found["rows"], found["columns"])), shape=(n, n)))
+
+
+def read_harwell_boeing(path: Path) -> dict[str, NDArray[Any]]:
+    """Triplets of a Harwell-Boeing file, through SciPy. Raises ValueError."""
+    from scipy.io import hb_read
+
+    symmetric = _is_symmetric(path)
+    matrix = coo_array(hb_read(path, spmatrix=False))
+    rows, columns = matrix.coords
+    if matrix.shape[0] != matrix.shape[1] or matrix.shape[0] > matrix.nnz:
+        raise ValueError(f"the matrix is {matrix.shape[0]}x{matrix.shape[1]} with {matrix.nnz} entries: damaged")
+    off = rows != columns
+    if symmetric and np.any(rows < columns) and np.any(rows > columns):
+        raise ValueError("says symmetric, but holds entries of both triangles")
+    if symmetric:
+        rows, columns = np.concatenate([rows, columns[off]]), np.concatenate([columns, rows[off]])
+        data = np.concatenate([matrix.data, matrix.data[off]])
+    else:
+        data = matrix.data
+    return {"rows": rows, "columns": columns, "data": data, "size": np.array(matrix.shape[0])}
+
+
+def _is_symmetric(path: Path) -> bool:
+    """The type is at the start of the third line: RSA or RUA. Raises ValueError."""
+    lines = path.read_text(encoding="latin-1").splitlines()
+    kind = lines[2][:3].upper() if len(lines) > 2 else ""
+    if kind not in ("RSA", "RUA"):
+        raise ValueError(f"is neither a Matrix Market nor a Harwell-Boeing file of an assembled real matrix ('{kind}')")
+    return kind == "RSA"

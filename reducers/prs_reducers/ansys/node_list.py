@@ -1,0 +1,129 @@
+"""Where ANSYS nodes are: an archive (.cdb), a listing of NLIST, or a table exported from Workbench."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+
+from prs_model.arrays import FloatArray
+from prs_model.errors import PartFileError, short
+from prs_model.part_files import NodeTable, read_text
+from prs_model.part_files.text import number
+
+NodeSets = dict[str, tuple[int, ...]]
+
+_NUMBER = re.compile(r"\d+\Z")
+_FORMAT = re.compile(r"\((\d+)i(\d+),(\d+)e(\d+)\.", re.IGNORECASE)
+_INTEGERS = re.compile(r"\((\d+)i(\d+)\)", re.IGNORECASE)
+
+
+def read_nodes(path: Path) -> tuple[NodeTable, NodeSets]:
+    """The nodes, with their axes where these are rotated, and the node components of an archive by name.
+
+    Decimal commas are read. Raises PartFileError naming the line that is wrong.
+    """
+    lines = read_text(path).splitlines()
+    blocks = [at for at, line in enumerate(lines) if line.strip().upper().startswith("NBLOCK")]
+    if len(blocks) > 1:
+        raise PartFileError(path, f"has {len(blocks)} NBLOCKs, expected one")
+    rows = _block(lines, blocks[0], path) if blocks else _listing(lines, path)
+    if not rows:
+        raise PartFileError(path, "has no nodes, expected lines of node number, x, y and z")
+    table = np.array([[*row, 0.0, 0.0, 0.0][:7] for row in rows])
+    angles = table[:, 4:]
+    frames = np.array([rotated_axes(each) for each in angles]) if np.any(angles) else None
+    return NodeTable(path, table[:, 0].astype(np.int64), table[:, 1:4], frames), _components(lines, path)
+
+
+def rotated_axes(angles: FloatArray) -> FloatArray:
+    """(3, 3) whose columns are a node's axes: turned by THXY about z, then THYZ about x, then THZX about y [deg].
+
+    Each is about an axis that the turns before have moved (ANSYS, commands N and NROTAT): R = Rz Rx Ry.
+    """
+    turns = []
+    for axis, angle in zip((2, 0, 1), np.deg2rad(angles), strict=True):
+        first, second = (axis + 1) % 3, (axis + 2) % 3
+        turn = np.eye(3)
+        turn[first, first] = turn[second, second] = np.cos(angle)
+        turn[second, first], turn[first, second] = np.sin(angle), -np.sin(angle)
+        turns.append(turn)
+    return np.asarray(turns[0] @ turns[1] @ turns[2])
+
+
+def _listing(lines: list[str], path: Path) -> list[list[float]]:
+    """Lines that start with a node number; headings and blank lines stand between pages."""
+    rows = []
+    for count, line in enumerate(lines, start=1):
+        words = line.split() if len(line.split()) > 1 else re.split("[,;]", line.strip())
+        if not words or not _NUMBER.match(words[0].strip()):
+            continue
+        try:
+            row = [number(word) for word in words if word.strip()]
+        except ValueError as error:
+            raise PartFileError(path, f"line {count}, '{short(line.strip())}': {error}") from error
+        if len(row) not in (4, 7):
+            what = f"found {len(row)} numbers, expected node, x, y, z, and three angles or none"
+            raise PartFileError(path, f"line {count}, '{short(line.strip())}': {what}")
+        rows.append(row)
+    return rows
+
+
+def _block(lines: list[str], start: int, path: Path) -> list[list[float]]:
+    """Rows of an NBLOCK: fixed columns after its format line, zeros at the end left out, up to a line N or -1."""
+    form = _FORMAT.search(lines[start + 1]) if start + 1 < len(lines) else None
+    if form is None:
+        raise PartFileError(path, f"line {start + 2}: expected the format of NBLOCK, such as (3i9,6e21.13e3)")
+    n, width, _, wide = map(int, form.groups())
+    rows: list[list[float]] = []
+    for count, line in enumerate(lines[start + 2 :], start=start + 3):
+        if line.strip().startswith(("N,", "-1")):
+            _check_count(lines[start], len(rows), path)
+            return rows
+        text = line[n * width :].rstrip()
+        values = [text[at : at + wide] for at in range(0, len(text), wide)]
+        try:
+            numbers = [number(value) if value.strip() else 0.0 for value in values]
+            rows.append([float(int(line[:width])), *[*numbers, 0.0, 0.0, 0.0][: max(3, len(numbers))]])
+        except ValueError as error:
+            raise PartFileError(path, f"line {count}, '{short(line.strip())}': {error}") from error
+    raise PartFileError(path, "NBLOCK has no end (N,..,-1): cut off")
+
+
+def _check_count(head: str, found: int, path: Path) -> None:
+    """NBLOCK,NUMFIELD,Solkey,NDMAX,NDSEL: the last is how many there are, where it is written."""
+    words = [word.strip() for word in head.split(",")]
+    if len(words) > 4 and words[4].isdigit() and int(words[4]) != found:
+        raise PartFileError(path, f"NBLOCK holds {found} nodes and says {words[4]}: damaged")
+
+
+def _components(lines: list[str], path: Path) -> NodeSets:
+    """CMBLOCK,NAME,NODE,count: a negative number ends a range that the one before it starts."""
+    sets: NodeSets = {}
+    for at, line in enumerate(lines):
+        words = [word.strip() for word in line.split("!")[0].split(",")]
+        if words[0].upper() != "CMBLOCK" or len(words) < 4 or not words[2].upper().startswith("NODE"):
+            continue
+        form = _INTEGERS.search(lines[at + 1]) if at + 1 < len(lines) else None
+        if form is None or not words[3].isdigit():
+            raise PartFileError(path, f"line {at + 1}: expected CMBLOCK,name,NODE,count and its format")
+        sets[words[1]] = _ranges(lines[at + 2 :], int(words[3]), int(form[2]), f"CMBLOCK {words[1]}", path)
+    return sets
+
+
+def _ranges(lines: list[str], count: int, width: int, what: str, path: Path) -> tuple[int, ...]:
+    found: list[int] = []
+    nodes: list[int] = []
+    for line in lines:
+        if len(found) >= count:
+            break
+        try:
+            found += [int(line[at : at + width]) for at in range(0, len(line.rstrip()), width)]
+        except ValueError as error:
+            raise PartFileError(path, f"{what}: '{short(line.strip())}' is no list of nodes") from error
+    if len(found) != count:
+        raise PartFileError(path, f"{what} holds {len(found)} numbers and says {count}: cut off")
+    for each in found:
+        nodes += range(nodes[-1] + 1, -each + 1) if each < 0 and nodes else [each]
+    return tuple(nodes)
