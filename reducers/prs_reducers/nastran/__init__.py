@@ -1,0 +1,155 @@
+"""Nastran's reduced parts: EXTSEOUT in OP4 or OP2, nas2cam assemblies, DMIG punches (OptiStruct's too)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import ClassVar, Literal
+
+import numpy as np
+
+from prs_model.description.schema import Section
+from prs_model.description.units import Units
+from prs_model.errors import PartFileError
+from prs_model.part_files import LabelledMatrices, NodeTable, read_apart, super_element
+from prs_model.plugins import PartRequest, Reducer
+from prs_model.reduction import SuperElement
+
+from .apart import EXTRA, LIST_OP4
+from .extdb import external, is_external, read_extdb
+from .matop4 import read_matop4
+from .nas2cam import Superelement, read_nas2cam, superelements
+from .punch import punch_matrices, read_punch
+
+__all__ = ["NastranOptions", "NastranReducer", "Superelement", "matrices", "superelements"]
+
+OP4, OP2 = ".op4", ".op2"
+PUNCH = (".pch", ".dmig", ".bdf", ".dat", ".nas", ".fem")
+NAMES = {OP4: ("KXX", "MXX"), OP2: ("MATK", "MATM"), **dict.fromkeys(PUNCH, ("KAAX", "MAAX"))}
+TAKEN = {OP4: {"asm", "pch"}, OP2: {"op4", "superelement", "grids"}, **{suffix: {"grids"} for suffix in PUNCH}}
+
+
+class NastranOptions(Section):
+    """Companion files are named relative to the source's folder.
+
+    asm, pch: companions of an .op4 of EXTSEOUT(MATOP4), else those of the same stem. op4: companion of an .op2 in
+    nas2cam form, else that of the same stem. superelement: which one of such an assembly (0 is the residual).
+    grids: bulk data file with the GRID and CORD2 entries of a punch that has none, or of an OP2 export.
+    stiffness, mass: names of the matrices, else KXX, MXX (.op4), KAAX, MAAX (punch), MATK, MATM (.op2).
+    modes: whether the modal coordinates are what Craig-Bampton promises, mass-normalised and not coupled elastically to
+    the points, which is then checked; say 'other' where a component mode run had free points (CSET, BNDFREE).
+    """
+
+    asm: str | None = None
+    pch: str | None = None
+    op4: str | None = None
+    superelement: int | None = None
+    grids: str | None = None
+    stiffness: str | None = None
+    mass: str | None = None
+    modes: Literal["fixed-interface", "other"] = "fixed-interface"
+
+
+class NastranReducer(Reducer[NastranOptions]):
+    description: ClassVar[str] = (
+        "Nastran superelement: EXTSEOUT .op4 or .op2, nas2cam .op2, DMIG punch (also OptiStruct)"
+    )
+    Options: ClassVar[type[Section]] = NastranOptions
+    gives = "reduced"
+    units = "asked"
+    writes = (".op4", ".pch")
+
+    def read(self, part: PartRequest[NastranOptions]) -> SuperElement:
+        """Read the part. Scalar points are modal coordinates; a grid's motions are in its own output system.
+
+        Raises PartFileError or MissingExtraError.
+        """
+        matrices, table, turned = _read(part)
+        modal = part.options.modes == "fixed-interface" and bool(np.any(matrices.is_mode))
+        return super_element(
+            matrices,
+            table,
+            part.file_units,
+            modes="fixed-interface" if modal else "",
+            provenance={"output systems": turned} if turned else {},
+        )
+
+    def files(self, part: PartRequest[NastranOptions]) -> tuple[Path, ...]:
+        """The source and its companions."""
+        suffix = _suffix(part.path)
+        if suffix == OP4:
+            return (part.path, *_companions(part))
+        if suffix == OP2:
+            return (part.path, _beside(part, part.options.op4, OP4), *_grids(part))
+        return (part.path, *_grids(part))
+
+    def write(self, element: SuperElement, path: Path, units: Units) -> None:
+        """Write .op4 with its .asm and .pch, or a DMIG .pch. Raises PartFileError or MissingExtraError."""
+        from .write import write_matop4, write_punch
+
+        (write_matop4 if path.suffix.lower() == OP4 else write_punch)(element, path, units)
+
+
+def matrices(path: Path | str) -> dict[str, tuple[int, int]]:
+    """Rows and columns of every matrix in an .op4 file, a DMIG punch, or an .op2 file with DMIG data blocks, by name.
+
+    Of DMIG, rows and columns that have entries are counted. Raises PartFileError or MissingExtraError.
+    """
+    path = Path(path)
+    if _suffix(path) == OP4:
+        sizes = read_apart(LIST_OP4, path, extra=EXTRA)
+        return {name: (int(size[0]), int(size[1])) for name, size in sizes.items()}
+    found = external(path).matrices if _suffix(path) == OP2 else punch_matrices(path)
+    return {name: matrix.shape for name, matrix in found.items()}
+
+
+def _read(part: PartRequest[NastranOptions]) -> tuple[LabelledMatrices, NodeTable, str]:
+    suffix, options = _suffix(part.path), part.options
+    _check_options(part, suffix)
+    names = options.stiffness or NAMES[suffix][0], options.mass or NAMES[suffix][1]
+    grids = next(iter(_grids(part)), None)
+    if suffix == OP4:
+        return read_matop4(part.path, _present(part), *names)
+    if suffix == OP2 and not is_external(part.path):
+        return read_nas2cam(part.path, _beside(part, options.op4, OP4), options.superelement)
+    read = read_extdb if suffix == OP2 else read_punch
+    return *read(part.path, grids, *names), ""
+
+
+def _suffix(path: Path) -> str:
+    """The suffix, which says what the file is. Raises PartFileError for one that is none of ours."""
+    suffix = path.suffix.lower()
+    if suffix not in NAMES:
+        hint = ": give the .op4 that it belongs to" if suffix == ".asm" else ""
+        raise PartFileError(path, f"has suffix '{suffix}', expected one of {', '.join(NAMES)}{hint}")
+    return suffix
+
+
+def _check_options(part: PartRequest[NastranOptions], suffix: str) -> None:
+    for name in ("asm", "pch", "op4", "superelement", "grids"):
+        if getattr(part.options, name) is not None and name not in TAKEN[suffix]:
+            raise PartFileError(part.path, f"option '{name}' says nothing of a {suffix} file: leave it out")
+
+
+def _beside(part: PartRequest[NastranOptions], option: str | None, suffix: str) -> Path:
+    return part.path.with_suffix(suffix) if option is None else part.path.parent / option
+
+
+def _grids(part: PartRequest[NastranOptions]) -> tuple[Path, ...]:
+    return () if part.options.grids is None else (part.path.parent / part.options.grids,)
+
+
+def _companions(part: PartRequest[NastranOptions]) -> tuple[Path, Path]:
+    return _beside(part, part.options.pch, ".pch"), _beside(part, part.options.asm, ".asm")
+
+
+def _present(part: PartRequest[NastranOptions]) -> tuple[Path, ...]:
+    """The companions that are named or there. Raises PartFileError when there is none."""
+    named = part.options.pch, part.options.asm
+    both = zip(_companions(part), named, strict=True)
+    present = tuple(path for path, option in both if option is not None or path.exists())
+    if not present:
+        listed = " or ".join(path.name for path in _companions(part))
+        raise PartFileError(
+            part.path, f"found no {listed} beside it, which say what the rows are: name them with options"
+        )
+    return present
