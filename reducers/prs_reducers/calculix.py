@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import ClassVar
 
@@ -57,7 +58,8 @@ class CalculixReducer(Reducer[CalculixOptions]):
         matrices = LabelledMatrices(stiffness, k, m, nodes, components)
         labelled = read_part_mesh(mesh)
         _check_held(matrices, labelled)
-        return meshed_model(matrices, labelled, part.file_units, {"mesh": mesh.name})
+        table = replace(labelled.table, frames=None)  # the matrices are in global axes whatever *TRANSFORM says
+        return meshed_model(matrices, replace(labelled, table=table), part.file_units, {"mesh": mesh.name})
 
     def files(self, part: PartRequest[CalculixOptions]) -> tuple[Path, ...]:
         stiffness, mass, dof, mesh = _paths(part)
@@ -125,16 +127,18 @@ def _mirrored(size: int, rows: IntArray, columns: IntArray, values: FloatArray) 
 
 
 def _check_held(matrices: LabelledMatrices, mesh: LabelledMesh) -> None:
-    """Every motion without a row is one that the deck holds."""
+    """Every motion without a row is one that the deck holds, in global axes."""
     missing = missing_rows(matrices, mesh)
     if mesh.held is None or not len(missing):
         return
-    held = set(map(tuple, mesh.held.tolist()))
+    frames = mesh.table.frames
+    turned = set() if frames is None else set(np.flatnonzero(np.any(frames != np.eye(3), axis=(1, 2))).tolist())
+    held = {(node, component) for node, component in mesh.held.tolist() if node not in turned}
     loose = np.array([pair for pair in missing.tolist() if tuple(pair) not in held], dtype=np.int64).reshape(-1, 2)
     if len(loose):
         raise PartFileError(
             matrices.source,
-            f"{len(loose)} motions of the mesh have no rows, and no *BOUNDARY of {mesh.table.source.name} holds them: "
-            f"{sentence_of(loose, mesh)}; matrices of another run, or motions tied by *EQUATION, *MPC, *RIGID BODY or "
+            f"{len(loose)} motions of the mesh have no rows, and no *BOUNDARY of {mesh.table.source.name} holds them in "
+            f"global axes: {sentence_of(loose, mesh)}; matrices of another run, or motions tied by *EQUATION, *MPC, *RIGID BODY or "
             "*TRANSFORM with *BOUNDARY, which are not read: leave them out and let the interfaces tie them",
         )

@@ -122,12 +122,12 @@ def _node_sets(cards: list[Card], place: Mapping[int, int], elements: Mapping[in
 
 
 def _with_elements(sets: Sets, members: Sets, elements: Mapping[int, Element]) -> Sets:
-    """Node sets, and the nodes of element sets whose names no node set has."""
+    """Node sets, and the nodes of element sets whose names no node set has; not the helpers of surfaces (``_..``)."""
     taken = {upper for _, upper in sets}
     of_elements = {
         key: (name, [node for label in labels for node in elements[label].nodes])
         for key, (name, labels) in members.items()
-        if key[1] not in taken
+        if key[1] not in taken and not name.startswith("_")
     }
     return sets | of_elements
 

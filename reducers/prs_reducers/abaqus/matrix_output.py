@@ -1,0 +1,134 @@
+"""``*MATRIX OUTPUT``: sparse matrices as row, column, value, or as node, dof, node, dof, value."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from scipy.sparse import coo_array, csr_array
+
+from prs_model.arrays import FloatArray, IntArray
+from prs_model.errors import PartFileError, short
+from prs_model.part_files import LabelledMatrices, read_text
+
+from ..labelled_mesh import LabelledMesh
+from ..number_table import read_table, whole_numbers
+
+HELD = 1e35
+"""Abaqus holds a motion by 1e36 on the diagonal of the stiffness."""
+INTERNAL = (
+    "nodes that Abaqus makes inside (negative labels; of hybrid beams, couplings and contact): "
+    "use plain solid, shell or B31 and B32 elements, and leave couplings to the interfaces"
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Entries:
+    """Entries of one matrix: rows and columns (m, 1) as numbers, or (m, 2) as node and dof; values (m,)."""
+
+    path: Path
+    rows: IntArray
+    columns: IntArray
+    values: FloatArray
+
+
+def read_matrices(text: str, stiffness: Path, mass: Path, mesh: LabelledMesh) -> LabelledMatrices:
+    """Stiffness (whose content is `text`) and mass with their labels, without motions that are held.
+
+    Raises PartFileError.
+    """
+    of_k, of_m = _entries(text, stiffness), _entries(read_text(mass), mass)
+    if of_k.rows.shape[1] != of_m.rows.shape[1]:
+        raise PartFileError(mass, f"is written in another FORMAT than {stiffness.name}: write both in one step")
+    if of_k.rows.shape[1] == 1:
+        labels = _in_order_of_nodes(int(max(of_k.rows.max(), of_k.columns.max())), stiffness, mesh)
+        k, m = (_matrix(each, each.rows[:, 0] - 1, each.columns[:, 0] - 1, len(labels)) for each in (of_k, of_m))
+    else:
+        labels, numbers = np.unique(np.concatenate([of_k.rows, of_k.columns]), axis=0, return_inverse=True)
+        at = numbers.reshape(2, -1)
+        k = _matrix(of_k, at[0], at[1], len(labels))
+        m = _matrix(of_m, _found(of_m, of_m.rows, labels), _found(of_m, of_m.columns, labels), len(labels))
+    free = np.flatnonzero(k.diagonal() < HELD)
+    labels = labels[free]
+    return LabelledMatrices(
+        stiffness, csr_array(k[free][:, free]), csr_array(m[free][:, free]), labels[:, 0], labels[:, 1] - 1
+    )
+
+
+def _entries(text: str, path: Path) -> Entries:
+    plain = text.replace(",", " ")
+    if "*" in plain:
+        plain = "\n".join(_without_comment(line, path) for line in plain.splitlines())
+    width = next((len(line.split()) for line in plain.splitlines() if line.strip()), 0)
+    if width not in (3, 5):
+        raise PartFileError(
+            path,
+            f"its lines hold {width} numbers, expected 3 (FORMAT=COORDINATE) or 5 (FORMAT=MATRIX INPUT) as *MATRIX "
+            "OUTPUT of Abaqus writes them",
+        )
+    table = read_table(plain, path, width)
+    numbers = whole_numbers(table[:, :-1], path, "row and column")
+    half = numbers.shape[1] // 2
+    entries = Entries(path, numbers[:, :half], numbers[:, half:], table[:, -1])
+    _check(entries)
+    return entries
+
+
+def _without_comment(line: str, path: Path) -> str:
+    if line.lstrip().startswith("*") and not line.lstrip().startswith("**"):
+        raise PartFileError(path, f"found '{short(line.strip(), 60)}', expected a stiffness or mass matrix only")
+    return "" if line.lstrip().startswith("**") else line
+
+
+def _check(entries: Entries) -> None:
+    labels = np.concatenate([entries.rows, entries.columns])
+    if np.any(labels[:, 0] < 1):
+        raise PartFileError(entries.path, f"{np.count_nonzero(labels[:, 0] < 1)} entries belong to {INTERNAL}")
+    if labels.shape[1] == 2 and np.any((labels[:, 1] < 1) | (labels[:, 1] > 6)):
+        wrong = labels[(labels[:, 1] < 1) | (labels[:, 1] > 6)][0]
+        raise PartFileError(
+            entries.path, f"node {wrong[0]} has dof {wrong[1]}, expected displacements and rotations, 1..6"
+        )
+
+
+def _in_order_of_nodes(size: int, path: Path, mesh: LabelledMesh) -> IntArray:
+    """(size, 2) node labels and dofs of unlabelled rows: nodes in the deck's order, three or six motions each."""
+    everything = np.arange(len(mesh.table.labels))
+    for nodes in (mesh.in_elements, everything):
+        for motions in (3, 6):
+            if motions * len(nodes) == size:
+                labels = np.repeat(mesh.table.labels[nodes], motions)
+                return np.column_stack([labels, np.tile(np.arange(1, motions + 1), len(nodes))])
+    raise PartFileError(
+        path,
+        f"has {size} rows, but {mesh.table.source.name} has {len(everything)} nodes, {len(mesh.in_elements)} of them "
+        "in elements, and rows are three or six to a node: truncated, or of another deck; where nodes differ in their "
+        "motions write FORMAT=MATRIX INPUT, which labels its rows",
+    )
+
+
+def _found(entries: Entries, wanted: IntArray, labels: IntArray) -> IntArray:
+    """Where (node, dof) pairs stand among the sorted `labels`."""
+    keys, own = labels[:, 0] * 8 + labels[:, 1], wanted[:, 0] * 8 + wanted[:, 1]
+    at = np.minimum(np.searchsorted(keys, own), len(keys) - 1)
+    strangers = np.flatnonzero(keys[at] != own)
+    if len(strangers):
+        node, dof = wanted[strangers[0]]
+        raise PartFileError(entries.path, f"has node {node}, dof {dof}, which the stiffness has not: of another part")
+    return at
+
+
+def _matrix(entries: Entries, rows: IntArray, columns: IntArray, size: int) -> csr_array:
+    """Both triangles, whether the file has them or one."""
+    if max(rows.max(), columns.max()) >= size:
+        raise PartFileError(entries.path, f"has row {max(rows.max(), columns.max()) + 1}, the stiffness {size}")
+    keys = np.sort(rows * size + columns)
+    if np.any(np.diff(keys) == 0):
+        raise PartFileError(entries.path, "has two values for one row and column: damaged, or two files in one")
+    values = entries.values
+    if not (np.any(rows < columns) and np.any(rows > columns)):
+        inner = rows != columns
+        values = np.append(values, values[inner])
+        rows, columns = np.append(rows, columns[inner]), np.append(columns, rows[inner])
+    return csr_array(coo_array((values, (rows, columns)), shape=(size, size)))
