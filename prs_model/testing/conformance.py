@@ -18,7 +18,7 @@ from ..description.units import Dimension, Units
 from ..errors import PrsError
 from ..reduction import SuperElement
 from ..reduction.summary import summarize
-from .damage import as_text, damage_table
+from .damage import as_text, damage_table, read_apart
 from .element import plain_element
 from .receptance import difference, first_eigenvalue, receptances
 from .sample import Sample, figures
@@ -76,7 +76,12 @@ def options_are_documented(sample: Sample) -> None:
 def unknown_options_are_refused(sample: Sample) -> None:
     """An option that does not exist is refused by name."""
     wrong = replace(sample, options={**sample.options, "no_such_option": 1})
-    _refused(wrong, "no_such_option")
+    try:
+        wrong.read()
+    except PrsError as error:
+        _require("no_such_option" in str(error), f"a refusal that does not name it: {error}")
+    else:
+        raise AssertionError("it was read")
 
 
 def the_gate_passes(sample: Sample) -> None:
@@ -111,7 +116,7 @@ def reading_twice_gives_the_same(sample: Sample) -> None:
 def nothing_is_printed(sample: Sample) -> None:
     """Nothing appears on standard output, not even from compiled libraries."""
     with TemporaryFile() as file, _standard_output_to(file.fileno()):
-        sample.reduce()
+        sample.read()
         file.seek(0)
         printed = file.read()
     _require(not printed, repr(printed[:200]))
@@ -119,15 +124,19 @@ def nothing_is_printed(sample: Sample) -> None:
 
 def files_without_sense_are_refused(sample: Sample) -> None:
     """A file that is missing, empty, a folder or of another kind is refused by its name."""
+    contents = {"missing": None, "empty": b"", "a picture": ANOTHER_KIND, "prose": PROSE}
     with TemporaryDirectory() as name:
-        copy = sample.copied(Path(name))
-        for content in (b"", ANOTHER_KIND, PROSE):
-            copy.path.write_bytes(content)
-            _refused(copy, copy.path.name)
-        copy.path.unlink()
-        _refused(copy, copy.path.name)
-        copy.path.mkdir()
-        _refused(copy, copy.path.name)
+        copies = {what: sample.copied(Path(name) / what) for what in (*contents, "a folder")}
+        for what, copy in copies.items():
+            copy.path.unlink()
+            if what == "a folder":
+                copy.path.mkdir()
+            elif (content := contents[what]) is not None:
+                copy.path.write_bytes(content)
+        answers = dict(zip(copies, read_apart(sample, list(copies.values())), strict=True))
+    for what, answer in answers.items():
+        _require(answer["result"] == "refused", f"{what}: {answer['result']} {answer['message']}")
+        _require(sample.path.name in answer["message"], f"{what}: a refusal without its name: {answer['message']}")
 
 
 def files_names_every_file(sample: Sample) -> None:
@@ -232,17 +241,6 @@ def _same(found: SuperElement, expected: SuperElement) -> None:
     eigenvalue = first_eigenvalue(expected)
     apart = difference(receptances(found, eigenvalue), receptances(expected, eigenvalue))
     _require(apart <= ALIKE, f"receptances that differ by {apart:.1e}")
-
-
-def _refused(sample: Sample, naming: str) -> None:
-    try:
-        sample.reduce()
-    except PrsError as error:
-        _require(naming in str(error), f"a refusal that does not name {naming}: {error}")
-    except Exception as error:
-        raise AssertionError(f"{type(error).__name__}: {error}, expected a PrsError") from error
-    else:
-        raise AssertionError(f"it was read, though {naming} is wrong")
 
 
 def _contents(folder: Path) -> dict[str, str]:

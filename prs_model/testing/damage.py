@@ -67,7 +67,7 @@ def damage_table(sample: Sample, *, places: int = 3, workers: int = 2) -> tuple[
         trials = list(_trials(whole, folder, places))
         shares = [trials[first::workers] for first in range(workers)]
         with ThreadPoolExecutor(workers) as pool:
-            answers = list(pool.map(lambda share: _tried(whole, share), shares))
+            answers = list(pool.map(lambda share: read_apart(whole, [trial.sample for trial in share]), shares))
     found = {
         trial.name: _outcome(trial, answer, sample)
         for share, said in zip(shares, answers, strict=True)
@@ -80,6 +80,23 @@ def as_text(outcomes: Sequence[Outcome]) -> str:
     """The table as lines of text: result, file and damage, what was said."""
     width = max((len(each.name) for each in outcomes), default=0)
     return "\n".join(f"{each.result:<8} {each.name:<{width}}  {short(each.message, 160)}" for each in outcomes)
+
+
+def read_apart(whole: Sample, damaged: Sequence[Sample]) -> list[dict[str, Any]]:
+    """What a process of its own says of each: result, message, and of what is read difference and warnings."""
+    samples = [whole, *damaged]
+    task = {"jobs": [_plain(sample) for sample in samples], "seconds": SECONDS, "memory": MEMORY}
+    environment = os.environ | {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
+    environment["PYTHONPATH"] = os.pathsep.join(entry for entry in sys.path if entry)
+    command = [sys.executable, "-m", f"{__package__}.trial"]
+    done = subprocess.run(command, input=json.dumps(task).encode(), capture_output=True, env=environment, check=False)
+    answers = [json.loads(line) for line in done.stdout.splitlines()]
+    if done.returncode != 0 or len(answers) != len(damaged):
+        said = done.stderr.decode(errors="replace").strip().splitlines()
+        raise PrsError(
+            f"{whole.reducer}: the undamaged sample cannot be read: {said[-1] if said else 'no reason said'}"
+        )
+    return answers
 
 
 @dataclass(frozen=True)
@@ -126,23 +143,6 @@ def _with(whole: Sample, root: Path, folder: Path, file: Path, content: bytes | 
             target.parent.mkdir(parents=True, exist_ok=True)
             target.write_bytes(content)
     return replace(whole, source=own / whole.path.relative_to(root))
-
-
-def _tried(whole: Sample, trials: Sequence[_Trial]) -> list[dict[str, Any]]:
-    """What the trial process says of each."""
-    samples = [whole, *(trial.sample for trial in trials)]
-    task = {"jobs": [_plain(sample) for sample in samples], "seconds": SECONDS, "memory": MEMORY}
-    environment = os.environ | {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
-    environment["PYTHONPATH"] = os.pathsep.join(entry for entry in sys.path if entry)
-    command = [sys.executable, "-m", f"{__package__}.trial"]
-    done = subprocess.run(command, input=json.dumps(task).encode(), capture_output=True, env=environment, check=False)
-    answers = [json.loads(line) for line in done.stdout.splitlines()]
-    if done.returncode != 0 or len(answers) != len(trials):
-        said = done.stderr.decode(errors="replace").strip().splitlines()
-        raise PrsError(
-            f"{whole.reducer}: the undamaged sample cannot be read: {said[-1] if said else 'no reason said'}"
-        )
-    return answers
 
 
 def _plain(sample: Sample) -> dict[str, Any]:
