@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import gzip
+import re
 import zlib
 from pathlib import Path
 
-from ..errors import PartFileError
+from ..errors import PartFileError, short
 
 LARGEST_EXPANSION = 200  # times the size of a .gz file: text of numbers packs ten to thirty times
+_NO_LETTER = re.compile(r"([-+]?\d*\.\d*)([-+]\d{1,3})")  # 1.5-102, as Fortran writes exponents of three digits
 
 
 def read_text(path: Path) -> str:
@@ -48,16 +50,10 @@ def read_bytes(path: Path) -> bytes:
 def number(text: str) -> float:
     """A number as solvers write it: 1.5, 1.5D+02, 1.5+02 (Fortran), 1,5 (decimal comma). Raises ValueError."""
     plain = text.strip().replace(",", ".").replace("D", "E").replace("d", "e")
+    fortran = _NO_LETTER.fullmatch(plain)
     try:
-        return float(plain)
+        if "_" in plain:  # which Python allows within a number
+            raise ValueError
+        return float(f"{fortran[1]}e{fortran[2]}" if fortran else plain)
     except ValueError:
-        mantissa, sign, exponent = _split_exponent(plain)
-        return float(f"{mantissa}e{sign}{exponent}")
-
-
-def _split_exponent(text: str) -> tuple[str, str, str]:
-    for sign in "+-":
-        at = text.rfind(sign)
-        if at > 0 and text[at + 1 :].isdigit():
-            return text[:at], sign, text[at + 1 :]
-    raise ValueError(f"found '{text}', expected a number")
+        raise ValueError(f"found '{short(text)}', expected a number") from None
