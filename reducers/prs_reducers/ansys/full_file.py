@@ -41,6 +41,8 @@ def read_arrays(path: Path) -> dict[str, NDArray[Any]]:
         file = FullFile(path)
     except NotImplementedError as error:
         raise ValueError(f"{error}: solve with a consistent mass and symmetric matrices") from error
+    except ValueError as error:
+        raise ValueError("its header cannot be read: damaged, or no .full file") from error
     header = file._header
     _check_header(header, path.stat().st_size)
     rows, stiffness, mass = file.load_km(sort=False)
@@ -108,4 +110,6 @@ def is_full(path: Path) -> bool:
         raise PartFileError(path, "there is no such file") from error
     except OSError as error:
         raise PartFileError(path, f"cannot be read: {error.strerror or error}") from error
+    if not head:
+        raise PartFileError(path, "is empty")
     return b"\0" in head
