@@ -87,7 +87,7 @@ def check_one_piece(nodes: Sequence[str], links: Iterable[tuple[str, str]], what
 
 
 def _default_up(x: FloatArray) -> FloatArray:
-    return np.eye(3)[2 if np.linalg.norm(x[:2]) > PARALLEL else 0]
+    return np.asarray(np.eye(3)[2 if np.linalg.norm(x[:2]) > PARALLEL else 0])
 
 
 def _unit(vector: FloatArray) -> FloatArray:

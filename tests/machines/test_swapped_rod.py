@@ -48,8 +48,10 @@ def show(title: str, found: np.ndarray, solid: np.ndarray) -> None:
 
 @pytest.mark.parametrize("way", NEAR)
 def test_replaced(head: prs.Machine, rods: Mapping[str, dict[str, Any]], way: str) -> None:
-    solid, found = head.modes(8).frequencies, head.replace({"bodies.rod": rods[way]}).modes(8).frequencies
+    swapped = head.replace({"bodies.rod": rods[way]})
+    solid, found = head.modes(8).frequencies, swapped.modes(8).frequencies
     show(f"machine.replace, rods {way}", found, solid)
+    assert swapped.parts["rod_3"].provenance["reducer"] == rods[way]["reducer"]
     np.testing.assert_allclose(found, solid, rtol=NEAR[way])
     if way != "exported":
         assert np.all(found > solid)  # the hub is rigid
