@@ -33,7 +33,7 @@ class BeamMember(Section):
     taper_to: str | None = None
     up: Direction | None = None
     offsets: tuple[Point, Point] | None = None
-    elements: Annotated[int, Field(ge=1)] = 8
+    elements: Annotated[int, Field(ge=1, le=1000)] = 8
     name: str | None = None  # default: its nodes', such as 'root-tip'
 
     @property
@@ -68,8 +68,16 @@ class BeamOptions(Section):
             if labels.count(member.label) > 1:
                 raise refuse(place, f"found two members '{member.label}', expected a 'name' of its own for each")
             self._check_line(place, member)
+            self._check_names(member.label)
         check_one_piece(list(self.nodes), [member.between for member in self.members], "members")
         return self
+
+    def _check_names(self, label: str) -> None:
+        for name in self.nodes:
+            if name.startswith(f"{label}."):
+                raise refuse(
+                    ("nodes", name), f"found a name like those of the inner nodes of member '{label}'; change it"
+                )
 
     def _check_line(self, place: Place, member: BeamMember) -> None:
         start, end = self.ends(member)

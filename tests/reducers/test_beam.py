@@ -218,6 +218,19 @@ def test_offsets_are_rigid() -> None:
         assert getattr(offset, name)[:12, :12] == pytest.approx(wanted, rel=1e-9, abs=1e-9 * np.abs(wanted).max())
 
 
+def test_an_interface_of_several_nodes_is_tied_rigidly() -> None:
+    """A fork whose two tips are held together: twice the stiffness of one prong, and a moment arm between them."""
+    nodes = {"root_1": (0, 0.1, 0), "root_2": (0, -0.1, 0), "tip_1": (1, 0.1, 0), "tip_2": (1, -0.1, 0)}
+    members = [{"between": (f"root_{i}", f"tip_{i}"), "section": "bar"} for i in (1, 2)]
+    members.append({"between": ("tip_1", "tip_2"), "section": "bar"})
+    interfaces = {"root": {"nodes": ("root_1", "root_2")}, "tip": {"set": "tip_1-tip_2"}}
+    element = prs.reduce("beam", nodes=nodes, sections={"bar": SQUARE}, members=members, interfaces=interfaces, modes=0)
+    stiffness, axial = element.stiffness[6:, 6:], E * AREA
+    shear = 1.0 / (1.0 / (12.0 * E * MOMENT) + 1.0 / (KAPPA * G * AREA))
+    assert np.diag(stiffness)[:3] == pytest.approx([2.0 * axial, 2.0 * shear, 2.0 * shear], rel=1e-9)
+    assert stiffness[5, 5] == pytest.approx(2.0 * (axial * 0.01 + E * MOMENT + shear / 4.0), rel=1e-9)
+
+
 def test_a_tapered_bar_stretches_as_its_integral_says() -> None:
     """int dx / EA = 4 L / pi E d0 d1; elements of constant section come near it as h^2."""
     sections = {
@@ -281,6 +294,11 @@ def test_wrong_members_are_explained(change: dict[str, Any], words: str) -> None
         ({"nodes": {"root": (0, 0, 0), "tip": (1, 0, 0), "far": (2, 0, 0)}}, "found none that join far to root"),
         ({"sections": {"bar": SQUARE | {"kind": "square"}}}, "found kind 'square', expected one of round"),
         ({"sections": {"bar": SQUARE | {"material": STEEL | {"E": 2.1e5}}}}, "which no solid has"),
+        (
+            {"nodes": {"root": (0, 0, 0), "tip": (1, 0, 0), "root-tip.1": (2, 0, 0)}},
+            "found a name like those of the inner",
+        ),
+        ({"members": bar(10**9)["members"]}, "less than or equal to 1000"),
         ({"members": bar()["members"] * 2}, "found two members 'root-tip'"),
     ],
 )
