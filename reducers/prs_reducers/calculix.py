@@ -138,7 +138,7 @@ def _check_held(matrices: LabelledMatrices, mesh: LabelledMesh) -> None:
     if len(loose):
         raise PartFileError(
             matrices.source,
-            f"{len(loose)} motions of the mesh have no rows, and no *BOUNDARY of {mesh.table.source.name} holds them in "
-            f"global axes: {sentence_of(loose, mesh)}; matrices of another run, or motions tied by *EQUATION, *MPC, *RIGID BODY or "
-            "*TRANSFORM with *BOUNDARY, which are not read: leave them out and let the interfaces tie them",
+            f"{len(loose)} motions of the mesh have no rows and no *BOUNDARY of {mesh.table.source.name} holds them "
+            f"in global axes: {sentence_of(loose, mesh)}; matrices of another run, or motions tied by *EQUATION, *MPC, "
+            "*RIGID BODY or *TRANSFORM with *BOUNDARY, which are not read: leave them out, the interfaces can tie them",
         )

@@ -48,10 +48,13 @@ class Card:
     def floats(self, line: int, fields: Fields, count: int) -> list[float]:
         """Fields as `count` numbers, empty or missing ones zero. Raises PartFileError."""
         padded = (*fields, *[""] * (count - len(fields)))[:count]
+        return [self._float(line, field) if field else 0.0 for field in padded]
+
+    def _float(self, line: int, field: str) -> float:
         try:
-            return [number(field) if field else 0.0 for field in padded]
+            return number(field)
         except ValueError as error:
-            raise self.error(line, f"*{self.keyword}: {short(error)}") from error
+            raise self.error(line, f"*{self.keyword}: found '{short(field, 40)}', expected a number") from error
 
 
 def read_cards(path: Path) -> list[Card]:

@@ -17,8 +17,12 @@ from prs_model.part_files import LabelledMatrices, full_model
 from .labelled_mesh import LabelledMesh
 from .solid_faces import area_shares, outer_surface
 
-RESISTING = 1e-6
+RESISTING = 1e-7
 """A row's force in rigid motion, over the sum of its terms' sizes, that is more than round-off of the file's digits."""
+UNEQUAL = 1e-9
+"""A difference between a mass along x and y, over the nodes' own, that is more than round-off of the file's digits."""
+FEW = 30
+"""Rows that one damaged number or line can reach."""
 
 
 def meshed_model(
@@ -26,8 +30,8 @@ def meshed_model(
 ) -> FiniteElementModel:
     """The model with the mesh's sets, areas and outer surface, in SI.
 
-    Raises PartFileError when nodes lack coordinates, a row of a solid has no stiffness or no mass, or, in a part with
-    held nodes, rigid motion costs energy where no held node is near.
+    Raises PartFileError when nodes lack coordinates, a row of a solid has no stiffness or no mass, its
+    mass differs along x, y and z, or rigid motion costs energy where no held node is near.
     """
     table, square = mesh.table, Dimension(length=2).factor(units)
     triangles, areas = outer_surface(mesh.solids, table.coordinates)
@@ -46,6 +50,7 @@ def meshed_model(
         provenance={"source": str(matrices.source), **provenance},
     )
     _check_complete(model, mesh, matrices)
+    _check_mass(model, mesh, matrices)
     _check_rows_far_from_held(model, mesh, matrices)
     return replace(
         model,
@@ -79,21 +84,46 @@ def _check_complete(model: FiniteElementModel, mesh: LabelledMesh, matrices: Lab
             )
 
 
+def _check_mass(model: FiniteElementModel, mesh: LabelledMesh, matrices: LabelledMatrices) -> None:
+    """A solid weighs the same along x, y and z: its mass is a number for each pair of nodes, times the identity."""
+    only_solid = np.zeros(len(model.coordinates), dtype=bool)
+    only_solid[np.setdiff1d(mesh.in_solids, mesh.others)] = True
+    along = []
+    whole = np.all(model.rows[:, :3] >= 0, axis=1) & only_solid
+    for axis in range(3):
+        rows = model.rows[whole, axis]
+        along.append(model.mass[rows][:, rows])
+    roots = np.sqrt(np.abs(along[0].diagonal()))
+    for axis in (1, 2):
+        apart = csr_array(along[axis] - along[0]).tocoo()
+        row, column = apart.coords
+        wrong = np.flatnonzero(np.abs(apart.data) > UNEQUAL * roots[row] * roots[column])
+        if len(wrong):
+            label = mesh.table.labels[np.flatnonzero(whole)[row[wrong[0]]]]
+            raise PartFileError(
+                matrices.source,
+                f"the mass of node {label} differs along x and {'xyz'[axis]}, which that of a solid does not: rows in "
+                "another order or a damaged number in the mass file",
+            )
+
+
 def _check_rows_far_from_held(model: FiniteElementModel, mesh: LabelledMesh, matrices: LabelledMatrices) -> None:
-    """In rigid motion only nodes in an element with a held node resist; a row elsewhere that does is a wrong row."""
+    """In rigid motion only nodes in an element with a held node resist; a row elsewhere that does is a wrong row.
+
+    A part without a held node is left to the physics gate, unless a single row is wrong by too little for it.
+    """
     near = _beside(mesh, missing_rows(matrices, mesh)[:, 0])
-    if not np.any(near):
-        return
+    held = bool(np.any(near))
     near[mesh.others] = True
     rows = np.flatnonzero(~near[model.dofs[:, 0]])
-    figures = _resistance(model)[rows]
-    if np.any(figures > RESISTING):
-        worst = int(rows[np.argmax(figures)])
-        label, axis = mesh.table.labels[model.dofs[worst, 0]], "xyz"[model.dofs[worst, 1] % 3]
+    bad = _resistance(model)[rows] > RESISTING
+    if np.any(bad) and (held or np.count_nonzero(bad) <= FEW):
+        node, component = model.dofs[rows[np.argmax(bad)]]
         raise PartFileError(
             matrices.source,
-            f"{np.count_nonzero(figures > RESISTING)} rows resist rigid motion though no held node is near (most of "
-            f"all node {label} {axis}): rows in another order, a damaged number, or the mesh of another part",
+            f"{np.count_nonzero(bad)} rows resist rigid motion though no held node is near (the first is node "
+            f"{mesh.table.labels[node]} u{'xyz'[component % 3]}): rows in another order, a damaged number, or the mesh "
+            "of another part",
         )
 
 

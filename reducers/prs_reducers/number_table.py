@@ -41,13 +41,17 @@ def _line_by_line(text: str, path: Path, columns: int, separator: str | None, fi
         fields = line.split(separator)
         if not line.strip():
             continue
-        try:
-            values = [number(field) for field in fields]
-        except ValueError as error:
-            raise PartFileError(path, f"line {place}: {short(error)}") from error
+        values = [_number(field, path, place) for field in fields]
         if len(values) != columns:
             raise PartFileError(
                 path, f"line {place}: found {len(values)} numbers, expected {columns}: {short(line.strip(), 60)}"
             )
         rows.append(values)
     return np.array(rows, dtype=float).reshape(-1, columns)
+
+
+def _number(field: str, path: Path, line: int) -> float:
+    try:
+        return number(field)
+    except ValueError as error:
+        raise PartFileError(path, f"line {line}: found '{short(field, 40)}', expected a number") from error
