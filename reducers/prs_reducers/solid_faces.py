@@ -62,7 +62,7 @@ def area_shares(corners: IntArray, middles: IntArray, points: FloatArray) -> Flo
     """(n,): each face's area spread evenly over its mid-side nodes, or its corners where it has none."""
     triangles = points[split(corners)]
     cross = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
-    areas = np.linalg.norm(cross, axis=1).reshape(-1, len(corners)).sum(axis=0) / 2.0
+    areas = np.linalg.norm(cross, axis=1).reshape(corners.shape[1] - 2, len(corners)).sum(axis=0) / 2.0
     bearing = middles if middles.shape[1] else corners
     weights = np.repeat(areas / bearing.shape[1], bearing.shape[1])
     return np.asarray(np.bincount(bearing.ravel(), weights=weights, minlength=len(points)), dtype=float)
