@@ -28,14 +28,22 @@ def lowest_modes(
     shift, pencil = _positive_definite(mass, stiffness, labels)
     scale = 1.0 / np.sqrt(np.diag(pencil))
     scaling = np.outer(scale, scale)
-    n = len(scale)
-    mu, vectors = eigh(mass * scaling, pencil * scaling, subset_by_index=[max(n - count, 0), n - 1])
-    mu, vectors = mu[::-1], vectors[:, ::-1]
+    mu, vectors = _largest(mass * scaling, pencil * scaling, count)
     heavy = mu > _MASS_TOLERANCE * mu[0]
     mu, shapes = mu[heavy], (vectors * scale[:, None])[:, heavy]
     shapes = shapes / np.sqrt(mu)
     signs = np.sign(shapes[np.argmax(np.abs(shapes), axis=0), np.arange(shapes.shape[1])])
     return 1.0 / mu + shift, shapes * signs
+
+
+def _largest(a: FloatArray, b: FloatArray, count: int) -> tuple[FloatArray, FloatArray]:
+    """The `count` largest eigenvalues of a x = mu b x with their vectors, the largest first."""
+    n = len(a)
+    try:
+        mu, vectors = eigh(a, b, subset_by_index=[max(n - count, 0), n - 1])
+    except LinAlgError:  # bisection may fail on clusters of eigenvalues, where solving for all of them does not
+        mu, vectors = eigh(a, b, driver="gvd")
+    return mu[::-1][:count], vectors[:, ::-1][:, :count]
 
 
 def slowest_rate(mass: FloatArray, stiffness: FloatArray) -> float:

@@ -19,6 +19,10 @@ from .labelled_mesh import LabelledMesh
 from .solid_faces import CORNERS, FACES, face_nodes
 
 SOLID = re.compile(r"C3D(\d+)")
+TIES = (
+    *("TIE", "EQUATION", "MPC", "COUPLING", "KINEMATIC COUPLING", "DISTRIBUTING COUPLING", "SHELL TO SOLID COUPLING"),
+    *("RIGID BODY", "CONTACT", "CONTACT PAIR", "EMBEDDED ELEMENT", "CYCLIC SYMMETRY MODEL", "MATRIX INPUT"),
+)
 HELD_BY_NAME = {"ENCASTRE": range(6), "PINNED": range(3)}
 
 
@@ -48,6 +52,7 @@ def read_deck_mesh(path: Path) -> LabelledMesh:
         node_sets=named(_with_elements(sets, members, elements)),
         surfaces=_surfaces(cards, elements, members),
         held=_held(cards, place, sets),
+        tied=any(card.keyword in TIES for card in cards),
     )
 
 

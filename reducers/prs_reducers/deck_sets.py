@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Mapping
 
 import numpy as np
@@ -10,6 +11,8 @@ from prs_model.arrays import IntArray
 from prs_model.errors import short
 
 from .keyword_deck import Card, Fields
+
+logger = logging.getLogger("prs_model")
 
 Sets = dict[tuple[str, str], tuple[str, list[int]]]
 """By scope and name in capitals: the name as spelled, and its members."""
@@ -33,9 +36,11 @@ def looked_up(card: Card, line: int, known: Sets, name: str) -> list[int]:
 def members_of(card: Card, known: Sets, numbered: Mapping[int, int], what: str) -> list[int]:
     """What the data lines of a set name: labels (an instance's name may stand before them), and earlier sets.
 
-    numbered: what a label stands for. A generated set leaves out labels that are none, as the solvers do.
+    numbered: what a label stands for. A generated set leaves out labels that are none, as the solvers do. A label
+    named twice is logged as a warning.
     """
     found: list[int] = []
+    seen: set[str] = set()
     for line, fields in card.data:
         if "GENERATE" in card.options:
             first, last, step = _generated(card, line, fields)
@@ -43,6 +48,9 @@ def members_of(card: Card, known: Sets, numbered: Mapping[int, int], what: str) 
             continue
         for each in filter(None, fields):
             label = each.rpartition(".")[2]
+            if label.isdigit() and each in seen:
+                logger.warning("%s, line %d: %s %s is twice in one set", card.file.name, line, what, label)
+            seen.add(each)
             if not label.isdigit():
                 found += looked_up(card, line, known, each)
             elif int(label) in numbered:

@@ -50,6 +50,7 @@ def meshed_model(
         provenance={"source": str(matrices.source), **provenance},
     )
     _check_complete(model, mesh, matrices)
+    _check_neighbours(model, mesh, matrices)
     _check_mass(model, mesh, matrices)
     _check_rows_far_from_held(model, mesh, matrices)
     return replace(
@@ -82,6 +83,27 @@ def _check_complete(model: FiniteElementModel, mesh: LabelledMesh, matrices: Lab
                 f"{len(empty)} rows of solid elements have no {name}, the first at node {label}: the {name} file is "
                 "truncated, or of another part",
             )
+
+
+def _check_neighbours(model: FiniteElementModel, mesh: LabelledMesh, matrices: LabelledMatrices) -> None:
+    """Nodes that act on each other are in one element, where nothing but solid elements joins them."""
+    if mesh.tied or len(mesh.others):
+        return
+    entries = model.stiffness.tocoo()
+    rows, columns = entries.coords
+    sizes = np.sqrt(np.abs(model.stiffness.diagonal()))
+    strong = np.abs(entries.data) > UNEQUAL * sizes[rows] * sizes[columns]
+    nodes, count = model.dofs[:, 0], len(model.coordinates)
+    acting = np.unique(nodes[rows[strong]] * count + nodes[columns[strong]])
+    pairs = [(each[:, :, None] * count + each[:, None, :]).ravel() for each in mesh.solids.values()]
+    alone = np.setdiff1d(acting, np.concatenate(pairs or [acting]))
+    if len(alone):
+        one, other = mesh.table.labels[[alone[0] // count, alone[0] % count]]
+        raise PartFileError(
+            matrices.source,
+            f"nodes {one} and {other} act on each other, but share no element of {mesh.table.source.name}: rows in "
+            "another order, a damaged element, or the mesh of another part",
+        )
 
 
 def _check_mass(model: FiniteElementModel, mesh: LabelledMesh, matrices: LabelledMatrices) -> None:
