@@ -212,6 +212,8 @@ def _check_frequencies(stiffness: FloatArray, mass: FloatArray, said: FloatArray
     except np.linalg.LinAlgError as error:
         raise PartFileError(path, f"KBBt and MBBt have no frequencies ({error}): damaged") from error
     found = np.sqrt(np.maximum(values, 0.0)) / (2.0 * np.pi)
+    if len(found) != len(said):
+        raise PartFileError(path, f"KBBt and MBBt have {len(found)} frequencies, the file says {len(said)}: damaged")
     if np.any(np.abs(found - said) > SAME_FREQUENCY * np.maximum(said, 0.01 * np.max(said))):
         pairs = ", ".join(f"{a:.5g} ({b:.5g})" for a, b in zip(found, said, strict=True))
         raise PartFileError(path, f"KBBt and MBBt give {pairs} Hz, in brackets the file's GY_frequencies: damaged")
