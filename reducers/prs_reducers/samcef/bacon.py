@@ -1,8 +1,9 @@
 """The part of a BACON data file (.dat) that tells where nodes are and which groups they form.
 
-Commands start with a point. Read are `.NOE`, `.SEL` and `.UNIT`; everything else is passed over. There is no public
-manual: what is accepted is what public writers and readers of such files use, and whatever else stands in these three
-commands is refused with its line.
+Commands start with a point, RETURN ends them. Read are `.NOE`, `.SEL` and `.UNIT`; everything else is passed over.
+There is no public manual: of `.NOE` and `.SEL` is accepted what public writers and readers of such files use (CalculiX
+cgx, BasicTools), and whatever else stands there is refused with its line. Of `.UNIT` nothing public tells the words:
+SI, or a length and a mass (MM and T, M and KG) are taken; anything else leaves the units to be said.
 """
 
 from __future__ import annotations
@@ -81,6 +82,8 @@ def _commands(text: str) -> Iterator[tuple[str, list[Line]]]:
     for count, raw in enumerate(text.splitlines(), start=1):
         words = [f'"{quoted}' if quoted else plain for quoted, plain in _WORD.findall(raw.split("!")[0])]
         words = [word for word in words if word not in ("$", "&")]
+        if words == ["RETURN"]:
+            break
         if words and re.match(r"\.[A-Za-z3]", words[0]):
             if name:
                 yield name, lines

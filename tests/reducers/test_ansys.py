@@ -1,0 +1,256 @@
+"""ANSYS matrices: the public .full file of a rotor, and exports made here from its matrices."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.io import hb_write
+from scipy.sparse import csc_array, tril
+
+import prs_model as prs
+from prs_model.arrays import FloatArray, IntArray
+from prs_model.part_files import LabelledMatrices
+from prs_reducers.ansys import load_full
+from prs_reducers.ansys.node_list import read_nodes, rotated_axes
+from tests.superelements import DATA, needs_data, reference
+
+ROTOR = DATA / "ansys" / "sparse.full"
+HEIGHT = 0.5  # m, of the rotor
+FOOT = {"foot": {"plane": {"point": [0.0, 0.0, 0.0], "normal": [0.0, 0.0, 1.0], "tolerance": 1e-6}}}
+
+
+@pytest.fixture(scope="module")
+def rotor() -> LabelledMatrices:
+    return load_full(ROTOR)
+
+
+@pytest.fixture(scope="module")
+def places(rotor: LabelledMatrices) -> tuple[IntArray, FloatArray]:
+    """Nodes and coordinates, which are not in the file. K is at rest in six motions only: turning about x moves every
+    node by (0, -z, y), about y by (z, 0, -x), so the shape is in K's null space; its height is known.
+    """
+    motions = np.linalg.eigh(rotor.stiffness.toarray())[1][:, :6].reshape(-1, 3, 6)
+    turns = np.linalg.svd((motions - motions.mean(axis=0)).reshape(-1, 6), full_matrices=False)[0][:, :3]
+    about = [turns @ np.linalg.svd(turns[axis::3])[2][-1] for axis in (0, 1)]
+    (_, minus_z, y), (z, _, minus_x) = (motion.reshape(-1, 3).T for motion in about)
+    points = np.column_stack([minus_x * (minus_z @ z) / (z @ z), y, -minus_z])
+    points *= HEIGHT / np.ptp(points[:, 2])
+    weights = rotor.mass.sum(axis=1)[2::3]
+    if weights @ points[:, 2] < weights.sum() * points[:, 2].mean():  # the disc sits near the foot
+        points = points - points[:, 2].min() * np.array([0.0, 0.0, 1.0])
+    else:
+        points = -points + points[:, 2].max() * np.array([0.0, 0.0, 1.0])
+    return rotor.nodes[::3], points
+
+
+def listing(nodes: IntArray, points: FloatArray) -> str:
+    """A node table as Workbench exports it in German."""
+    rows = ["\t".join([str(node), *(f"{value:.12e}".replace(".", ",") for value in place)]) for node, place in
+            zip(nodes.tolist(), points, strict=True)]  # fmt: skip
+    return "Knotennummer\tX-Position (m)\tY-Position (m)\tZ-Position (m)\t\n" + "\t\n".join(rows) + "\t\n"
+
+
+def market(matrix: FloatArray) -> str:
+    """One triangle as *EXPORT,..,MMF writes it."""
+    half = tril(matrix).tocoo()
+    rule = "%" + 60 * "="
+    head = f"%%MatrixMarket matrix coordinate real symmetric \n{rule}\n% Creator: ANSYS Inc\n% \n{rule}\n"
+    rows, columns = half.coords
+    entries = [f"{i + 1} {j + 1} {v:.15E}" for i, j, v in zip(rows, columns, half.data, strict=True)]
+    return head + f"{matrix.shape[0]} {matrix.shape[0]} {half.nnz}\n" + "\n".join(entries) + "\n"
+
+
+def back(nodes: IntArray) -> str:
+    return f"%%MatrixMarket matrix array integer general \n% Creator: ANSYS Inc\n{len(nodes)} 1\n" + "".join(
+        f"{node}\n" for node in nodes
+    )
+
+
+@pytest.fixture
+def export(tmp_path: Path, rotor: LabelledMatrices, places: tuple[IntArray, FloatArray]) -> Path:
+    (tmp_path / "k.txt").write_text(market(rotor.stiffness.toarray()))
+    (tmp_path / "m.txt").write_text(market(rotor.mass.toarray()))
+    (tmp_path / "map.txt").write_text(back(places[0]))
+    (tmp_path / "nodes.txt").write_text(listing(*places))
+    return tmp_path
+
+
+OPTIONS = {"mass": "m.txt", "map": "map.txt", "coordinates": "nodes.txt"}
+
+
+@needs_data
+def test_full_file_meets_its_record(rotor: LabelledMatrices) -> None:
+    known = reference("ansys/sparse.full")
+    order = np.lexsort((rotor.components, rotor.nodes))
+    assert np.column_stack([rotor.nodes, rotor.components])[order][:4].tolist() == known["dof_ref_first4"]
+    assert list(rotor.stiffness.shape) == known["size"]
+    model = prs.FiniteElementModel(
+        stiffness=rotor.stiffness,
+        mass=rotor.mass,
+        coordinates=np.zeros((115, 3)),
+        dofs=np.column_stack([rotor.nodes - 1, rotor.components]),
+    )
+    np.testing.assert_allclose(model.frequencies(14)[6:], known["freq_hz_first"][6:], rtol=1e-7)
+
+
+@needs_data
+def test_rotor_weighs_what_the_same_rotor_weighs_in_abaqus(export: Path) -> None:
+    """The file with a node list is a part: mass and mass centre are those of the same mesh in another solver."""
+    known = reference("abaqus/rotorDisc")
+    model = prs.read_part("ansys", ROTOR, units="m-N-kg-s", coordinates=str(export / "nodes.txt"))
+    body = model.mass_properties()
+    np.testing.assert_allclose(body.mass, known["mass_xyz"][0], rtol=1e-6)
+    np.testing.assert_allclose(body.centre, known["cg"], atol=1e-6)
+    element = prs.reduce("ansys", ROTOR, units="m-N-kg-s", coordinates=str(export / "nodes.txt"), interfaces=FOOT)
+    assert element.n_modes == 3
+
+
+@needs_data
+def test_exports_are_the_same_part_as_the_full_file(export: Path, rotor: LabelledMatrices) -> None:
+    element = prs.reduce("ansys", export / "k.txt", units="m-N-kg-s", **OPTIONS, interfaces=FOOT)
+    model = prs.read_part("ansys", export / "k.txt", units="m-N-kg-s", **OPTIONS)
+    assert element.check()
+    np.testing.assert_allclose(model.stiffness.toarray(), rotor.stiffness.toarray(), rtol=1e-14)
+    np.testing.assert_allclose(
+        model.frequencies(14)[6:], reference("ansys/sparse.full")["freq_hz_first"][6:], rtol=1e-7
+    )
+
+
+@needs_data
+def test_harwell_boeing_with_its_mapping(export: Path, rotor: LabelledMatrices) -> None:
+    for name, matrix in (("k.hb", rotor.stiffness), ("m.hb", rotor.mass)):
+        hb_write(export / name, csc_array(matrix))
+    rows = zip(rotor.nodes, rotor.components, strict=True)
+    lines = [f"{row:14d}{node:14d}  {('UX', 'UY', 'UZ')[c]}" for row, (node, c) in enumerate(rows, start=1)]
+    (export / "k.mapping").write_text("  Matrix Eqn          Node   DOF\n" + "\n".join(lines) + "\n")
+    options = {**OPTIONS, "mass": "m.hb", "map": "k.mapping"}
+    model = prs.read_part("ansys", export / "k.hb", units="m-N-kg-s", **options)
+    np.testing.assert_allclose(
+        model.frequencies(8)[6:], reference("ansys/sparse.full")["freq_hz_first"][6:8], rtol=1e-6
+    )
+
+
+def without(word: str) -> Callable[[str], str]:
+    return lambda text: "".join(line for line in text.splitlines(keepends=True) if not line.startswith(word))
+
+
+@needs_data
+@pytest.mark.parametrize(
+    ("name", "change", "message"),
+    [
+        ("k.txt", lambda text: text[: len(text) // 2], "ends within its last line|cut off"),
+        ("k.txt", lambda text: text.replace("general", "x").replace("symmetric", "general", 1), "one triangle only"),
+        ("m.txt", lambda text: text.replace("345 345", "344 344", 1), "has 344 rows, expected 345|is 344x344|outside"),
+        ("map.txt", without("31"), "holds 114 numbers, its size line says"),
+        ("map.txt", lambda text: text.replace("\n31\n", "\n0\n"), "it is the FORWARD vector"),
+        ("map.txt", lambda text: text.replace("\n31\n", "\n17\n"), "names a node twice"),
+        ("map.txt", lambda text: text.replace("\n31\n", "\n31131\n"), "have no coordinates in nodes.txt: 31131"),
+        ("nodes.txt", without("31\t"), "have no coordinates in nodes.txt: 31"),
+        ("nodes.txt", lambda text: text.replace("\n31\t", "\n31\tx", 1), "expected a number"),
+        ("nodes.txt", lambda text: text.replace("\n31\t", "\n17\t", 1), "node 17 stands there twice"),
+        ("nodes.txt", lambda text: "nothing\n", "has no nodes"),
+    ],
+)
+def test_damaged_exports_are_refused(export: Path, name: str, change: Callable[[str], str], message: str) -> None:
+    text = (export / name).read_text()
+    assert change(text) != text
+    (export / name).write_text(change(text))
+    with pytest.raises(prs.PartFileError, match=message):
+        prs.read_part("ansys", export / "k.txt", units="m-N-kg-s", **OPTIONS)
+
+
+@needs_data
+def test_the_wrong_order_of_nodes_fails_the_gate(export: Path, places: tuple[IntArray, FloatArray]) -> None:
+    swapped = places[0].copy()
+    swapped[[3, 40]] = swapped[[40, 3]]
+    (export / "map.txt").write_text(back(swapped))
+    with pytest.raises(prs.PhysicsError, match="rigid motion costs energy"):
+        prs.reduce("ansys", export / "k.txt", units="m-N-kg-s", **OPTIONS, interfaces=FOOT)
+
+
+@needs_data
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda data: b"", "is empty"),
+        (lambda data: data[:1000], "is no .full file|cut off"),
+        (lambda data: data[:98304], "its header says 152664: cut off"),
+        (lambda data: data[:24600] + bytes(byte ^ 0x55 for byte in data[24600:24640]) + data[24640:], "rigid motion"),
+        (lambda data: b"\0\1\2\3" * 5000, "header cannot be read|damaged"),
+    ],
+)
+def test_damaged_full_files_are_refused(export: Path, change: Callable[[bytes], bytes], message: str) -> None:
+    path = export / "bad.full"
+    path.write_bytes(change(ROTOR.read_bytes()))
+    with pytest.raises((prs.PartFileError, prs.PhysicsError), match=message):
+        prs.reduce("ansys", path, units="m-N-kg-s", coordinates="nodes.txt", interfaces=FOOT)
+
+
+ARCHIVE = """/COM,ANSYS RELEASE 20.1
+NBLOCK,6,SOLID,        12,         3
+(3i9,6e21.13e3)
+        7        0        0 0.0000000000000E+000 1.0000000000000E+000
+        8        0        0 2.0000000000000E+000 0.0000000000000E+000-3.0000000000000E+000
+       12        0        0 0.0000000000000E+000 0.0000000000000E+000 0.0000000000000E+000 9.0000000000000E+001
+N,R5.3,LOC,       -1,
+CMBLOCK,BORE    ,NODE,       3  ! users node component
+(8i10)
+         7       -8        12
+"""
+
+
+def test_archives_give_places_axes_and_node_components(tmp_path: Path) -> None:
+    path = tmp_path / "part.cdb"
+    path.write_text(ARCHIVE)
+    table, sets = read_nodes(path)
+    assert table.labels.tolist() == [7, 8, 12]
+    np.testing.assert_array_equal(table.coordinates, [[0.0, 1.0, 0.0], [2.0, 0.0, -3.0], [0.0, 0.0, 0.0]])
+    assert table.frames is not None
+    np.testing.assert_allclose(table.frames[2], [[0, -1, 0], [1, 0, 0], [0, 0, 1]], atol=1e-15)
+    np.testing.assert_array_equal(table.frames[:2], [np.eye(3)] * 2)
+    assert sets == {"BORE": (7, 8, 12)}
+    path.write_text(ARCHIVE.replace("        12,         3", "        12,         4"))
+    with pytest.raises(prs.PartFileError, match="holds 3 nodes and says 4"):
+        read_nodes(path)
+    path.write_text(ARCHIVE[: ARCHIVE.index("N,R5.3")])
+    with pytest.raises(prs.PartFileError, match="has no end"):
+        read_nodes(path)
+
+
+def test_a_listing_of_nlist_has_pages_and_angles(tmp_path: Path) -> None:
+    heading = " LIST ALL SELECTED NODES.   DSYS=      0\n\n   NODE        X       Y       Z      THXY   THYZ   THZX\n"
+    path = tmp_path / "nlist.lis"
+    path.write_text(
+        f"{heading}      1  0.0  0.5  1.0   0.00  90.00   0.00\n\n{heading}      2 1.0 0.0 0.0 0.0 0.0 0.0\n"
+    )
+    table, _ = read_nodes(path)
+    np.testing.assert_array_equal(table.coordinates, [[0.0, 0.5, 1.0], [1.0, 0.0, 0.0]])
+    assert table.frames is not None
+    np.testing.assert_allclose(table.frames[0], [[1, 0, 0], [0, 0, -1], [0, 1, 0]], atol=1e-15)
+
+
+def test_nodal_axes_turn_about_axes_already_turned() -> None:
+    """x is turned towards y by THXY; THZX then turns z towards x about the y that has moved."""
+    np.testing.assert_allclose(
+        rotated_axes(np.array([90.0, 0.0, 90.0])), [[0, -1, 0], [0, 0, 1], [-1, 0, 0]], atol=1e-15
+    )
+
+
+@needs_data
+def test_rotated_nodal_axes_are_turned_back(export: Path, rotor: LabelledMatrices) -> None:
+    """One node's rows in axes turned by 30 degrees about z, and the node list says so: the same part."""
+    turn = rotated_axes(np.array([30.0, 0.0, 0.0]))
+    nodes = rotor.nodes[::3].tolist()
+    at = 3 * nodes.index(50) + np.arange(3)
+    to_body = np.eye(345)
+    to_body[np.ix_(at, at)] = turn
+    for name, matrix in (("k.txt", rotor.stiffness), ("m.txt", rotor.mass)):
+        local = to_body.T @ matrix.toarray() @ to_body
+        (export / name).write_text(market((local + local.T) / 2.0))
+    table = (export / "nodes.txt").read_text().splitlines()
+    angles = [f"{line.rstrip()}\t{30 if line.startswith('50' + chr(9)) else 0}\t0\t0" for line in table[1:]]
+    (export / "nodes.txt").write_text("\n".join([table[0], *angles]) + "\n")
+    model = prs.read_part("ansys", export / "k.txt", units="m-N-kg-s", **OPTIONS)
+    np.testing.assert_allclose(model.stiffness.toarray(), rotor.stiffness.toarray(), atol=1e-6)
+    assert prs.reduce("ansys", export / "k.txt", units="m-N-kg-s", **OPTIONS, interfaces=FOOT).check()
