@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -124,13 +124,12 @@ def _put_column(matrix: Dmig, card: Card) -> None:
         matrix.put((card.integer(at), card.integer(at + 1, 0)), column, complex(card.real(at + 2), imaginary))
 
 
-def _groups(card: Card) -> Iterator[int]:
-    """Where each entry of a column begins. Raises PartFileError for a column without any."""
-    last = max((index for index, text in enumerate(card.fields) if text != BLANK), default=0)
-    if last < 4:
-        raise card.wrong("a column without entries: a line is missing")
-    groups = range(4, last + 1, 4)
-    return iter([at for at in groups if any(card.text(at + k) != BLANK for k in range(4))])
+def _groups(card: Card) -> list[int]:
+    """Where each entry of a column begins. Raises PartFileError for a column whose first entry is blank."""
+    groups = [at for at in range(4, len(card.fields), 4) if any(card.fields[at : at + 4])]
+    if groups[:1] != [4]:
+        raise card.wrong("a column whose first entry is blank: a line is missing")
+    return groups
 
 
 def labelled(
