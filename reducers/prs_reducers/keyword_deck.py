@@ -75,12 +75,16 @@ def deck_files(path: Path) -> tuple[Path, ...]:
 
 def _cards(path: Path, within: tuple[Path, ...]) -> Iterator[Card]:
     """within: the decks that include this one, outermost first."""
-    if path.resolve() in within:
-        raise PartFileError(within[-1], f"*INCLUDE of {path.name}, which includes it: a circle")
     for card in _plain_cards(path):
         yield card
         if card.keyword == "INCLUDE":
-            yield from _cards(path.parent / card.option("INPUT").strip('"'), (*within, path.resolve()))
+            name = card.option("INPUT").strip('"')
+            inner, around = path.parent / name, (*within, path.resolve())
+            if inner.resolve() in around:
+                raise card.error(card.line, f"*INCLUDE of {name}, which includes it: a circle")
+            if not inner.is_file():
+                raise card.error(card.line, f"*INCLUDE of {name}: there is no such file in {path.parent}")
+            yield from _cards(inner, around)
 
 
 def _plain_cards(path: Path) -> Iterator[Card]:
