@@ -14,6 +14,7 @@ heading and the coordinates may be absent. Lines that start with #, % or ! are c
     # reduced: true                a condensed part, though no modes are among its rows
     # modes: fixed-interface       the modes are mass-normalised and uncoupled from the nodes by stiffness
     # set bore: 11 12 13           a named set of nodes
+    # stiffness-sha256: 6a1f..     what the file of the stiffness must hash to; mass-sha256 likewise
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from hashlib import sha256
 from pathlib import Path
 
 import numpy as np
@@ -44,15 +46,17 @@ COMPONENTS = {
 }
 
 _WORD = re.compile(r'"([^"]*)"|([^\s,;"]+)')
-_FACT = re.compile(r"[#%!]\s*(units|reduced|modes|set\s+(.+?))\s*:\s*(.*\S)\s*$", re.IGNORECASE)
+_FACT = re.compile(
+    r"[#%!]\s*(units|reduced|modes|stiffness-sha256|mass-sha256|set\s+(.+?))\s*:\s*(.*\S)\s*$", re.IGNORECASE
+)
 
 
 @dataclass(frozen=True, eq=False)
 class DofTable:
     """What each row is. nodes: (n,) labels, of a mode its number; components: (n,) 0..5 or MODE.
 
-    places: where the nodes are, None when the table has no coordinates. facts: `units`, `reduced` and `modes` as they
-    stand in comments; node_sets: node labels by name.
+    places: where the nodes are, None when the table has no coordinates. facts: `units`, `reduced` and the others as
+    they stand in comments; node_sets: node labels by name.
     """
 
     source: Path
@@ -88,6 +92,21 @@ class DofTable:
         if written != units:
             found = f"{units.length}-{units.force}-{units.mass}-s"
             raise PartFileError(self.source, f"is in {said}, and 'units' says {found}: correct one of them")
+
+    def check_digest(self, name: str, text: str, path: Path) -> None:
+        """Raises PartFileError when the text of the file of `name` is not the one that the table was written with."""
+        said = self.facts.get(f"{name}-sha256", digest(text))
+        if said != digest(text):
+            raise PartFileError(
+                path,
+                f"is not the {name} that {self.source.name} was written with: changed, damaged or of another part; if "
+                f"that is meant, remove the line '{name}-sha256' there",
+            )
+
+
+def digest(text: str) -> str:
+    """Of the lines of a text, whatever ends them."""
+    return sha256("\n".join(text.splitlines()).encode("latin-1", "replace")).hexdigest()
 
 
 def read_dof_table(path: Path) -> DofTable:

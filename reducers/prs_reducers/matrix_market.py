@@ -7,20 +7,21 @@ from pathlib import Path
 from typing import ClassVar
 
 import numpy as np
+from scipy.sparse import csr_array
 
 from prs_model.arrays import FloatArray
 from prs_model.description.schema import Section
 from prs_model.description.units import Units
 from prs_model.errors import PartFileError
 from prs_model.finite_elements import FiniteElementModel
-from prs_model.part_files import MODE, LabelledMatrices, full_model, super_element
+from prs_model.part_files import MODE, LabelledMatrices, full_model, read_text, super_element
 from prs_model.part_files.labelled import ENERGY, INERTIA, LENGTH, si_scales
 from prs_model.plugins import PartRequest, Reducer
 from prs_model.reduction import SuperElement
 from prs_model.reduction.storage import whole
 
-from .dof_table import DofTable, read_dof_table, write_dof_table
-from .mtx import read_mtx, write_mtx
+from .dof_table import DofTable, digest, read_dof_table, write_dof_table
+from .mtx import parse_mtx, write_mtx
 
 
 class MatrixMarketOptions(Section):
@@ -52,8 +53,8 @@ class MatrixMarketReducer(Reducer[MatrixMarketOptions]):
             raise PartFileError(dofs, "has no coordinates: write x, y, z after the component")
         matrices = LabelledMatrices(
             source=stiffness,
-            stiffness=read_mtx(stiffness, len(table.nodes)),
-            mass=read_mtx(mass, len(table.nodes)),
+            stiffness=_read(stiffness, "stiffness", table),
+            mass=_read(mass, "mass", table),
             nodes=table.nodes,
             components=table.components,
         )
@@ -87,26 +88,20 @@ class MatrixMarketReducer(Reducer[MatrixMarketOptions]):
         nodes, components = coordinates_of(element, path)
         stiffness, mass = in_file_units(element, np.array(components), units)
         system = f"{units.length}-{units.force}-{units.mass}-s"
-        facts = {"reduced": "true"}
+        texts = {
+            "stiffness": _mtx_text(stiffness, f"stiffness of {element.name}, {system}"),
+            "mass": _mtx_text(mass, f"mass of {element.name}, {system}"),
+        }
+        facts = {"reduced": "true", **{f"{name}-sha256": digest(text) for name, text in texts.items()}}
         if element.provenance.get("modes") == "fixed-interface":
             facts["modes"] = "fixed-interface"
-        table = DofTable(
-            path,
-            np.array(nodes),
-            np.array(components),
-            None,
-            facts,
-            {k: tuple(v) for k, v in element.node_sets.items()},
-        )
+        table = DofTable(path, np.array(nodes), np.array(components), None, facts, element.node_sets)
         positions = dict(zip(element.nodes, element.positions / LENGTH.factor(units), strict=True))
         held = ("held to the ground: say 'grounded: true'",) if element.grounded else ()
-        texts = (
-            _mtx_text(mass, f"mass of {element.name}, {system}"),
-            write_dof_table(table, system, positions, (f"rows of {element.name}", *held)),
-            _mtx_text(stiffness, f"stiffness of {element.name}, {system}"),
-        )
+        rows = write_dof_table(table, system, positions, (f"rows of {element.name}", *held))
+        beside = companions(path)
         try:
-            for file, text in zip((*companions(path), path), texts, strict=True):
+            for file, text in zip((*beside, path), (texts["mass"], rows, texts["stiffness"]), strict=True):
                 with whole(file) as opened:
                     opened.write(text.encode())
         except OSError as error:
@@ -148,6 +143,13 @@ def in_file_units(element: SuperElement, components: np.ndarray, units: Units) -
     scales = si_scales(components, units)
     square = np.outer(scales, scales)
     return element.stiffness * square / ENERGY.factor(units), element.mass * square / INERTIA.factor(units)
+
+
+def _read(path: Path, name: str, table: DofTable) -> csr_array:
+    text = read_text(path)
+    matrix = parse_mtx(text, path, len(table.nodes))
+    table.check_digest(name, text, path)
+    return matrix
 
 
 def _mtx_text(matrix: FloatArray, comment: str) -> str:

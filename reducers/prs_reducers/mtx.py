@@ -14,7 +14,6 @@ from scipy.sparse import coo_array, csr_array
 
 from prs_model.arrays import FloatArray
 from prs_model.errors import PartFileError, short
-from prs_model.part_files import read_text
 from prs_model.part_files.text import number
 
 BANNER = "%%matrixmarket"
@@ -25,17 +24,12 @@ def is_mtx(text: str) -> bool:
     return text[: len(BANNER)].lower() == BANNER
 
 
-def read_mtx(path: Path, rows: int | None = None) -> csr_array:
-    """The real square matrix of a Matrix Market file (plain or gzip), both triangles filled.
+def parse_mtx(text: str, path: Path, rows: int | None = None) -> csr_array:
+    """The real square matrix of a Matrix Market file, both triangles filled; text: of the file at `path`.
 
     rows: how many it must have, where that is known. Fortran exponents (1.5D+02) are read. Raises PartFileError when
     the file is not such a one, is cut off or goes on too long, names an entry twice or one outside of the matrix.
     """
-    return parse_mtx(read_text(path), path, rows)
-
-
-def parse_mtx(text: str, path: Path, rows: int | None = None) -> csr_array:
-    """As `read_mtx`, of the text of a file."""
     layout, symmetric = _banner(text, path)
     check_end(text, path)
     start, sizes = _sizes(text, path, 3 if layout == "coordinate" else 2)

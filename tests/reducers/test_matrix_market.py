@@ -78,6 +78,19 @@ def test_an_averaged_node_cannot_be_written(tmp_path: Path) -> None:
     assert not (tmp_path / "other.mtx").exists()
 
 
+@pytest.mark.parametrize("name", ["part.mtx", "part_mass.mtx"])
+def test_another_digit_is_noticed_in_what_we_wrote(tmp_path: Path, name: str) -> None:
+    """A plausible part, but not the one that was written."""
+    source = written(tmp_path)
+    text = (tmp_path / name).read_text()
+    digit = len(text) - 8
+    (tmp_path / name).write_text(text[:digit] + str(9 - int(text[digit])) + text[digit + 1 :])
+    with pytest.raises(prs.PartFileError, match=r"part_dofs\.txt was written with"):
+        prs.reduce("matrix_market", source, units="m-N-kg-s")
+    (tmp_path / name).write_text(text.replace("\n", "\r\n"))
+    assert prs.reduce("matrix_market", source, units="m-N-kg-s").size == 13
+
+
 def rod(folder: Path) -> Path:
     """Four bars in a row along x, only ux: its lowest modes are known, 1-d matrices by hand."""
     k, m = E * AREA / (LENGTH / 4), DENSITY * AREA * LENGTH / 4 / 6
