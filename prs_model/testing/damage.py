@@ -19,7 +19,7 @@ from .sample import Sample
 from .variants import variants
 
 SECONDS, MEMORY = 30.0, 2 << 30
-SAME = 1e-8  # of the receptances
+SAME = 1e-6  # of the receptances
 
 Result = Literal["refused", "same", "noticed", "unseen", "wrong", "crash", "hang", "memory"]
 FAULTS: tuple[Result, ...] = ("wrong", "crash", "hang", "memory")
@@ -31,7 +31,7 @@ INCHES = {"*: units in-lbf-slinch-s": "in inches the part is as plausible; its m
 class Outcome:
     """What became of one damage to one file.
 
-    result: refused with a message; same: read, and the part is the undamaged one; noticed: read, but with a warning;
+    result: refused with a message; same: read, and the part is the undamaged one to six digits; noticed: read, but with a warning;
     unseen: another part, which nothing can notice, as the sample says with the reason; wrong: another part, silently;
     crash, hang, memory: what no reader may do. difference: of the part from the undamaged one, where it was read.
     """

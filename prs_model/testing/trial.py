@@ -11,7 +11,6 @@ import json
 import logging
 import os
 import resource
-import select
 import signal
 import sys
 import time
@@ -24,6 +23,8 @@ import numpy as np
 from ..arrays import FloatArray
 from ..errors import PrsError
 from ..reduction import SuperElement
+from .pipes import ending, read_all
+from .readers import run_forked, run_here, use
 from .receptance import difference, first_eigenvalue, receptances
 from .sample import Sample
 
@@ -58,8 +59,10 @@ def main() -> None:
     answers = os.dup(1)
     os.dup2(2, 1)  # whatever a reader prints is no answer
     jobs: Jobs = task["jobs"]
+    use(run_here)
     with _warnings() as warned:
         whole = _Whole(Sample(**jobs[0]).reduce())
+    use(run_forked)
     for job in jobs[1:]:
         answer = _forked(job, whole, set(warned), task["seconds"], task["memory"])
         os.write(answers, (json.dumps(answer) + "\n").encode())
@@ -74,7 +77,7 @@ def _forked(job: Mapping[str, Any], whole: _Whole, known: set[str], seconds: flo
         os.close(reading)
         _child(job, whole, known, memory, writing)
     os.close(writing)
-    said, late = _all(reading, begun + seconds)
+    said, late = read_all(reading, begun + seconds)
     os.close(reading)
     with contextlib.suppress(ProcessLookupError):
         os.killpg(child, signal.SIGKILL)  # with the readers it may have started
@@ -84,25 +87,7 @@ def _forked(job: Mapping[str, Any], whole: _Whole, known: set[str], seconds: flo
         return {**json.loads(said), **took}
     if late:
         return {"result": "hang", "message": f"not read within {seconds:.0f} s", **took}
-    return {"result": "crash", "message": f"the process ended with {_ending(status)}", **took}
-
-
-def _ending(status: int) -> str:
-    code = os.waitstatus_to_exitcode(status)
-    return signal.Signals(-code).name if code < 0 else f"exit status {code}"
-
-
-def _all(reading: int, until: float) -> tuple[bytes, bool]:
-    """Everything a pipe gives before its end, and whether time ran out."""
-    parts: list[bytes] = []
-    while (left := until - time.monotonic()) > 0.0:
-        if not select.select([reading], [], [], left)[0]:
-            break
-        part = os.read(reading, 1 << 16)
-        if not part:
-            return b"".join(parts), False
-        parts.append(part)
-    return b"", True
+    return {"result": "crash", "message": f"the process ended with {ending(status)}", **took}
 
 
 def _child(job: Mapping[str, Any], whole: _Whole, known: set[str], memory: int, writing: int) -> None:

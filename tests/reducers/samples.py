@@ -1,0 +1,190 @@
+"""A part in every format: real exports where there are some, else a steel block or the kit's plain part."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+import numpy as np
+from scipy.sparse import csr_array
+
+from prs_model import plugins
+from prs_model.description.units import Units
+from prs_model.testing import Sample
+from prs_model.testing.element import plain_element
+from prs_reducers.mesh_file import TetrahedralMesh
+from tests.meshes import STEEL, box, steel, write
+from tests.reducers import test_ansys, test_nastran_op2, test_samcef
+from tests.superelements import DATA
+
+BLOCK, CELLS = (0.12, 0.04, 0.03), (2, 1, 1)  # m
+MASS = STEEL["density"] * float(np.prod(BLOCK))
+MM = "mm-N-tonne-s"
+SIDES = {"base": {"set": "x0"}, "tip": {"set": "x1"}}
+PLAIN = {"base": {"node": 11}, "tip": {"node": 23}}
+
+ONCE = "a mode's stiffness, mass between a mode and a node, a rotary inertia: such a number stands there once"
+ANY_NUMBER = {"*: another digit*": ONCE, "*: a bit flipped*": ONCE}
+UNCOUNTED = {"*: a line missing*": "the format does not say how many entries there are, and zeros have none"}
+SHAPE = "another shape of a mesh is a mesh: a coordinate stands there once, and a deck does not count its elements"
+ANY_SHAPE = {f"*: {damage}*": SHAPE for damage in ("another digit", "a bit flipped", "a line missing")}
+HELD = "a part that is held has no rigid motion to check, and each number on the diagonal stands there once"
+
+
+def block() -> TetrahedralMesh:
+    return box(BLOCK, CELLS)
+
+
+def npz(folder: Path) -> Sample:
+    plain_element().save(folder / "part.npz")
+    return Sample("npz", folder / "part.npz", interfaces=PLAIN, mass=3.5)
+
+
+def gmsh(folder: Path) -> Sample:
+    path = write(block(), folder / "part.msh", 1e3)
+    return Sample("solid", path, MM, {"material": STEEL}, SIDES, mass=MASS)
+
+
+def solid_deck(folder: Path) -> Sample:
+    path = deck(block(), folder / "part.inp")
+    return Sample("solid", path, MM, {"material": STEEL}, SIDES, mass=MASS, unseen=ANY_SHAPE)
+
+
+def calculix(folder: Path) -> Sample:
+    """Upper triangles, column by column, in the digits of CalculiX; all in mm, N, tonne."""
+    model = steel(block())
+    deck(block(), folder / "part.inp")
+    columns, rows = np.nonzero(np.tril(np.abs(model.stiffness.toarray()) + np.abs(model.mass.toarray())))
+    for suffix, matrix in ((".sti", model.stiffness), (".mas", model.mass)):
+        values = matrix.toarray()[rows, columns] * 1e-3
+        lines = (f"{r + 1} {c + 1}  {v:.13e}" for r, c, v in zip(rows, columns, values, strict=True))
+        (folder / f"part{suffix}").write_text("\n".join(lines) + "\n")
+    (folder / "part.dof").write_text("".join(f"{node + 1}.{axis + 1}\n" for node, axis in model.dofs))
+    return Sample("calculix", folder / "part.sti", MM, {}, SIDES, mass=MASS)
+
+
+def abaqus(folder: Path) -> Sample:
+    """Coordinate form, both triangles, as *MATRIX OUTPUT writes it."""
+    model = steel(block())
+    deck(block(), folder / "part.inp")
+    for name, matrix in (("STIF1", model.stiffness), ("MASS1", model.mass)):
+        (folder / f"part_{name}.mtx").write_text("".join(entries(matrix, 1e-3)))
+    return Sample("abaqus", folder / "part_STIF1.mtx", MM, {"mesh": "part.inp"}, SIDES, mass=MASS)
+
+
+def matrix_market(folder: Path) -> Sample:
+    return written("matrix_market", folder / "part.mtx", ANY_NUMBER)
+
+
+def dmig(folder: Path) -> Sample:
+    return written("nastran", folder / "part.pch", ANY_NUMBER | UNCOUNTED)
+
+
+def op4(folder: Path) -> Sample:
+    return written("nastran", folder / "part.op4", ANY_NUMBER)
+
+
+def written(reducer: str, path: Path, unseen: dict[str, str]) -> Sample:
+    """The plain part as the reducer itself writes it."""
+    plugins.reducer(reducer).write(plain_element(), path, Units.parse(MM))
+    return Sample(reducer, path, MM, {}, PLAIN, mass=3.5, unseen=unseen)
+
+
+def extdb(folder: Path) -> Sample:
+    """DMIGOP2 as it is documented, without coordinates of its own for units: lengths in m."""
+    path = test_nastran_op2.write(folder / "part.op2", plain_element())
+    return Sample("nastran", path, "m-N-kg-s", {}, PLAIN, mass=3.5, unseen=ANY_NUMBER)
+
+
+def samcef(folder: Path) -> Sample:
+    """Two dense matrices, a table of rows, and coordinates and units from a BACON deck."""
+    stiffness, mass = test_samcef.matrices()
+    (folder / "k.txt").write_text(test_samcef.fortran(stiffness))
+    (folder / "m.txt").write_text(test_samcef.fortran(mass))
+    (folder / "dofs.txt").write_text(test_samcef.table(places=False))
+    (folder / "part.dat").write_text(test_samcef.DECK)
+    options = {"mass": "m.txt", "dofs": "dofs.txt", "deck": "part.dat"}
+    return Sample("samcef", folder / "k.txt", MM, options, PLAIN, mass=4.0, unseen=ANY_NUMBER)
+
+
+def ansys_export(folder: Path) -> Sample:
+    """APDL's *EXPORT of both matrices as MMF, the nodes of their rows, and a list of nodes with decimal commas."""
+    model = steel(block())
+    labels = np.arange(1, len(model.coordinates) + 1)
+    (folder / "k.txt").write_text(test_ansys.market(model.stiffness.toarray()))
+    (folder / "m.txt").write_text(test_ansys.market(model.mass.toarray()))
+    (folder / "map.txt").write_text(test_ansys.back(labels))
+    (folder / "nodes.txt").write_text(test_ansys.listing(labels, model.coordinates))
+    options = {"mass": "m.txt", "map": "map.txt", "coordinates": "nodes.txt"}
+    ends = {
+        name: {"plane": {"point": (x, 0.0, 0.0), "normal": (1, 0, 0), "tolerance": 1e-6}}
+        for name, x in (("base", 0.0), ("tip", BLOCK[0]))
+    }
+    return Sample("ansys", folder / "k.txt", "m-N-kg-s", options, ends, mass=MASS)
+
+
+def outboard(folder: Path) -> Sample:
+    grids = {f"g{grid}": {"node": grid} for grid in (3, 11, 19, 27)}
+    return Sample("nastran", DATA / "nastran_extseout" / "outboard.op4", MM, {}, grids, mass=1590.3838)
+
+
+def nas2cam(folder: Path) -> Sample:
+    grids = {f"g{grid}": {"node": grid} for grid in (3, 11, 19, 27)}
+    source = DATA / "nastran_extseout" / "nas2cam.op2"
+    return Sample("nastran", source, MM, {"superelement": 101}, grids, mass=1590.3838)
+
+
+def bracket(folder: Path) -> Sample:
+    bores = {
+        name: {"cylinder": {"point": point, "axis": axis, "radius": 0.01, "tolerance": 1e-4}}
+        for name, point, axis in (("foot", (0.04, 0.03, 0.0), (0, 0, 1)), ("head", (0.088, 0.03, 0.05), (1, 0, 0)))
+    }
+    return Sample("calculix", DATA / "calculix" / "full_free.sti.gz", MM, {}, bores, mass=0.89038919)
+
+
+def rotor(folder: Path) -> Sample:
+    source = DATA / "abaqus" / "rotorDiscTestSTIF1.mtx"
+    ends = {
+        name: {"plane": {"point": (x, 0.0, 0.0), "normal": (1, 0, 0), "tolerance": 1e-6}}
+        for name, x in (("left", 0.0), ("right", 0.5))
+    }
+    return Sample("abaqus", source, "m-N-kg-s", {"mesh": "rotorDiscTest.inp"}, ends)
+
+
+def subdyn(folder: Path) -> Sample:
+    source = DATA / "openfast" / "FASTSum_5MW_OC3Mnpl.SD.sum.yaml"
+    return Sample("openfast", source, interfaces={"tower": {"node": "interface"}}, grounded=True)
+
+
+def extptfm(folder: Path) -> Sample:
+    """Three translations only, so nothing is named to take hold of them; the gate and the figures see it all."""
+    source = DATA / "openfast" / "FASTIn_ExtPtfm_SubSef.dat"
+    unseen = {"*: another digit*": HELD, "*: a bit flipped*": HELD}
+    return Sample("openfast", source, options={"components": ("ux", "uy", "uz")}, grounded=True, unseen=unseen)
+
+
+OWN: tuple[Callable[[Path], Sample], ...] = (
+    npz, gmsh, solid_deck, calculix, abaqus, matrix_market, dmig, op4, extdb, samcef, ansys_export,
+)  # fmt: skip
+REAL: tuple[Callable[[Path], Sample], ...] = (outboard, nas2cam, subdyn, extptfm)
+BIG: tuple[Callable[[Path], Sample], ...] = (bracket, rotor)
+
+
+def entries(matrix: csr_array, factor: float) -> Iterable[str]:
+    full = matrix.tocoo()
+    rows, columns = full.coords
+    for row, column, value in zip(rows, columns, full.data, strict=True):
+        yield f"{row + 1} {column + 1}  {value * factor:.15e}\n"
+
+
+def deck(mesh: TetrahedralMesh, path: Path) -> Path:
+    """A deck in mm with the sides as node sets; nodes are numbered from 1 in the mesh's order."""
+    lines = ["*NODE, NSET=NALL"]
+    lines += [f"{i}, {x:.9g}, {y:.9g}, {z:.9g}" for i, (x, y, z) in enumerate(mesh.points * 1e3, start=1)]
+    lines += ["*ELEMENT, TYPE=C3D10, ELSET=ALL"]
+    lines += [f"{i}, {', '.join(str(node + 1) for node in nodes)}" for i, nodes in enumerate(mesh.elements, start=1)]
+    for name in sorted(mesh.surfaces):
+        nodes = [str(node + 1) for node in np.unique(mesh.groups[name])]
+        lines += [f"*NSET, NSET={name}", *(", ".join(nodes[at : at + 16]) for at in range(0, len(nodes), 16))]
+    path.write_text("\n".join(lines) + "\n")
+    return path
