@@ -1,7 +1,7 @@
 """Damaged part files, every format: none crashes, hangs, fills the memory or becomes another part silently.
 
-``pytest -s`` prints the tables. `unseen` in them is what no reader can tell: each sample names which damage that may be,
-and why. With ``-m benchmark`` many more places are damaged.
+``pytest -s`` prints the tables. `unseen` in them is what no reader can tell: each sample names which damage that may
+be, and why. With ``-m benchmark`` many more places are damaged.
 """
 
 from __future__ import annotations
