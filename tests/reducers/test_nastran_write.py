@@ -113,6 +113,19 @@ def test_what_has_no_rows_in_nastran(tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
+def test_damage_that_no_format_shows(tmp_path: Path) -> None:
+    """One entry less in a symmetric mass matrix is as good a matrix; the sum at the end of what we write tells."""
+    path = tmp_path / "part.pch"
+    sent(plain_element(), path)
+    lines = path.read_text().splitlines(keepends=True)
+    for damaged in (lines[:-2] + lines[-1:], lines[:-2]):
+        path.write_text("".join(damaged))
+        with pytest.raises(prs.PartFileError, match=r"not as it was written: it is damaged, or was edited"):
+            prs.read_part("nastran", path, units=SI)
+    path.write_text("".join(lines).replace("\n", "\r\n"))
+    prs.read_part("nastran", path, units=SI)
+
+
 def test_a_punch_does_not_replace_a_companion(tmp_path: Path) -> None:
     sent(plain_element(), tmp_path / "part.op4")
     with pytest.raises(prs.PartFileError, match=r"would replace the companion of part\.op4"):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import math
 import re
@@ -14,6 +15,8 @@ from prs_model.part_files import read_text
 from prs_model.part_files.text import number
 
 NAME = re.compile(r"[A-Z][A-Z0-9]{2,7}\*?")  # no bulk data entry has a shorter name
+SIGNED = "$ Written by prs-model, with a sum of its lines at the end"
+SUM = re.compile(r"^\$ prs-model sum ([0-9a-f]{16})\s*$", re.MULTILINE)
 NOTE = re.compile(r'^\$ prs-model point (\d+) = (".*")\s*$', re.MULTILINE)
 WIDTHS = {"small": 8, "large": 16}
 BLANK = ""
@@ -62,10 +65,13 @@ class Card:
 def read_cards(path: Path) -> list[Card]:
     """Every entry of a bulk data or punch file, in its order; what stands before BEGIN BULK is left out.
 
-    Raises PartFileError naming the line of what is no bulk data, and for INCLUDE, which is not followed.
+    Raises PartFileError naming the line of what is no bulk data, and for INCLUDE, which is not followed; of a file
+    that this program wrote, also where it is not as it was written.
     """
+    text = read_text(path)
+    _check_sum(path, text)
     cards: list[Card] = []
-    for line, name, fields in _entries(path, read_text(path)):
+    for line, name, fields in _entries(path, text):
         if name == "BEGIN" and fields == ("BULK",):
             cards.clear()
         elif name == "ENDDATA":
@@ -83,6 +89,24 @@ def read_cards(path: Path) -> list[Card]:
 def names_of_points(path: Path) -> dict[int, str]:
     """Names that the writer left in comments, by number."""
     return {int(number_): str(json.loads(name)) for number_, name in NOTE.findall(read_text(path))}
+
+
+def signed(lines: list[str]) -> bytes:
+    """Lines as a file whose last line is their sum, by which damage is noticed that no format shows."""
+    lines = [SIGNED, *lines]
+    return "\n".join([*lines, f"$ prs-model sum {_sum(lines)}", ""]).encode("ascii")
+
+
+def _sum(lines: list[str]) -> str:
+    return hashlib.sha256("\n".join(lines).encode("latin-1")).hexdigest()[:16]
+
+
+def _check_sum(path: Path, text: str) -> None:
+    found = SUM.search(text)
+    whole = not text[found.end() :].strip() and _sum(text[: found.start()].splitlines()) == found[1] if found else False
+    if (found or SIGNED in text) and not whole:
+        hint = "it is damaged, or was edited (remove its first and last line if that was meant)"
+        raise PartFileError(path, f"is not as it was written: {hint}")
 
 
 def _entries(path: Path, text: str) -> Iterator[tuple[int, str | None, tuple[str, ...]]]:

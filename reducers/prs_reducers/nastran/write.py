@@ -15,6 +15,7 @@ from prs_model.reduction import SuperElement
 from prs_model.reduction.storage import whole
 
 from .apart import EXTRA
+from .cards import signed
 from .points import Points, components_of, pairs, points_of, scalars_of
 
 NUMBER = 101  # of the superelement, and of the Fortran unit that the assembly run reads it from
@@ -36,7 +37,7 @@ def write_matop4(element: SuperElement, path: Path, units: Units) -> None:
     points = points_of(element, path, units)
     data = _op4(points)
     for suffix, lines in ((".asm", _assembly(points)), (".pch", _superelement(points))):
-        _write(path.with_suffix(suffix), "\n".join([*_head(units, points), *lines, ""]).encode("ascii"))
+        _write(path.with_suffix(suffix), signed([*_head(units, points), *lines]))
     _write(path, data)
 
 
@@ -53,7 +54,7 @@ def write_punch(element: SuperElement, path: Path, units: Units) -> None:
     lines = [*_head(units, points), *_points(points)]
     for name, matrix in (("KAAX", points.stiffness), ("MAAX", points.mass)):
         lines += _dmig(name, points, (matrix + matrix.T) / 2.0)
-    _write(path, "\n".join([*lines, ""]).encode("ascii"))
+    _write(path, signed(lines))
 
 
 def real(value: float, letter: str = "E") -> str:
@@ -93,7 +94,7 @@ def _write(path: Path, data: bytes) -> None:
 
 def _head(units: Units, points: Points) -> list[str]:
     named = [f"$ prs-model point {number} = {json.dumps(name)}" for number, name in points.names.items()]
-    return [f"$ Super-element in {units.length}, {units.force}, {units.mass}, s; written by prs-model", *named]
+    return [f"$ Super-element in {units.length}, {units.force}, {units.mass}, s", *named]
 
 
 def _assembly(points: Points) -> list[str]:
