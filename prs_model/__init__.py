@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from .machine import Machine, load_machine
     from .modes import Modes
     from .plugins import PartRequest, Reducer, list_machines, list_reducers
-    from .reduction import SuperElement, TravellingElement, read_part, reduce
+    from .reduction import SuperElement, TravellingElement, export, read_part, reduce
     from .synthesis import System
 
     __version__: str
@@ -43,6 +43,7 @@ _LAZY = {
     "System": "synthesis",
     "Task": "kinematics.tasks",
     "TravellingElement": "reduction",
+    "export": "reduction",
     "list_machines": "plugins",
     "list_reducers": "plugins",
     "load_machine": "machine",
@@ -72,6 +73,7 @@ __all__ = [
     "UnknownNameError",
     "UnreachablePoseError",
     "__version__",
+    "export",
     "list_machines",
     "list_reducers",
     "load_machine",

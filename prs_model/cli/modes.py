@@ -83,7 +83,8 @@ def show(outcome: dict[str, Any]) -> str:
     pose = pose_text(outcome["pose"], {name: dimension_of(unit) for name, unit in outcome["pose_units"].items()})
     rows = [("mode", "frequency/Hz", "what moves (share of kinetic energy)", "tool point", "strain energy")]
     rows += [_row(mode) for mode in outcome["modes"]]
-    lines = [f"{outcome['machine']} at {pose} ({outcome['coordinates']} coordinates)", "", table(rows)]
+    at = f" at {pose}" if pose else ""
+    lines = [f"{outcome['machine']}{at} ({outcome['coordinates']} coordinates)", "", table(rows)]
     if len(outcome["modes"]) < outcome["requested"]:
         lines += ["(all there are)"]
     if outcome["picture"]:

@@ -23,6 +23,8 @@ def pinocchio_newton(
     model: pin.Model, equations: Equations, start: FloatArray, target: FloatArray
 ) -> tuple[FloatArray, bool]:
     """Joint values (n,) from `start` (n,) for one target (t,), and whether they solve the equations."""
+    if model.nv == 0:  # nothing to solve, and Pinocchio 4.1 crashes on the Jacobian of such a model
+        return start.copy(), True
     data, q = model.createData(), start.copy()
     anchors = [(loop.rows, *_anchor(model, equations, loop)) for loop in equations.loops]
     for _ in range(_ITERATIONS):
@@ -34,7 +36,7 @@ def pinocchio_newton(
             residuals.append(np.asarray(anchor_data.constraint_position_error, dtype=float))
             jacobians.append(_error_rate(rows, anchor_data) @ anchor.jacobian(model, data, anchor_data))
         residual = np.concatenate(residuals)
-        if np.max(np.abs(residual)) <= TOLERANCE:
+        if np.max(np.abs(residual), initial=0.0) <= TOLERANCE:
             return q, True
         step = least_squares_of_one(np.vstack(jacobians), residual)
         q -= step * min(1.0, 0.5 / max(np.max(np.abs(step)), 0.5))

@@ -54,7 +54,7 @@ def _corrected(equations: Equations, q: FloatArray, target: FloatArray) -> Float
 
 def _never_moves(equations: Equations) -> _Problem | None:
     tool = equations.tool
-    if tool.moves.any():
+    if tool.moves.any() or not equations.task.coordinates:
         return None
     message = f"found '{tool.b}', which no joint moves relative to '{tool.a}'; expected the link that the task moves"
     return ("task", "frame"), message
@@ -81,10 +81,12 @@ def _gaps(equations: Equations, q: FloatArray, target: FloatArray) -> str:
     ends = np.cumsum([loop.rows for loop in equations.loops], dtype=int)
     rows = np.split(np.abs(equations.residual(equations.tree.forward(q[None]), target)[0]), ends)
     gaps = [f"{loop.name} open by {row.max():.3g}" for loop, row in zip(equations.loops, rows, strict=False)]
-    return ", ".join([*gaps, f"the pose missed by {rows[-1].max():.3g}"]) + " m or rad"
+    return ", ".join([*gaps, f"the pose missed by {rows[-1].max(initial=0.0):.3g}"]) + " m or rad"
 
 
 def _too_far(reach: Reach, stored: FloatArray, q: FloatArray) -> _Problem | None:
+    if not len(q):
+        return None
     j = int(np.argmax(np.abs(q - stored)))
     if abs(q[j] - stored[j]) <= _LARGEST_CORRECTION:
         return None

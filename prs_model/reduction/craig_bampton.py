@@ -82,6 +82,7 @@ def hold(model: FiniteElementModel, ties: Sequence[Tie]) -> HeldPart:
             averages.append(averaging_matrix(model, tie))
             averaged.append(columns)
     _check_one_piece(model, ties)
+    logger.info("%s: factorizing, %d DOFs and %d interfaces", model.name, model.size, len(ties))
     constraints, interior = csr_array(vstack(averages)), np.flatnonzero(~is_tied)
     solve = _solver(model, interior, csr_array(constraints[:, interior]), held=bool(np.any(is_tied)))
     return HeldPart(model, boundary, constraints, np.concatenate(averaged), interior, solve)
@@ -109,11 +110,12 @@ def fixed_interface_modes(part: HeldPart, n_modes: int) -> FloatArray:
     One more is computed, to warn when the last one kept is half of a pair.
     """
     model, n, m = part.model, len(part.interior), part.constraints.shape[0]
-    if n_modes > n - m - 1:
-        raise PartFileError(model.source, f"found {n - m} inner DOFs, too few for {n_modes} modes")
     if n_modes == 0:
         return np.zeros((model.size, 0))
+    if n_modes > n - m - 1:
+        raise PartFileError(model.source, f"found {n - m} inner DOFs, too few for {n_modes} modes")
     count = min(n_modes + 1, n - m - 1)
+    logger.info("%s: finding %d fixed-interface modes", model.name, n_modes)
     shapes = np.zeros((model.size, count))
     inner, inner_mass = (csr_array(each[part.interior][:, part.interior]) for each in (model.stiffness, model.mass))
     held = np.zeros((m, 1))

@@ -135,7 +135,7 @@ def _at_nodes(nodes: Mapping[str, NodeId | Sequence[NodeId]]) -> dict[str, dict[
 def _asked(name: str, body: Body, folder: Path) -> tuple[plugins.Reducer[Any], plugins.PartRequest[Any]]:
     """The reducer of a body, and what it is asked for."""
     reducer = plugins.reducer(body.reducer)
-    options = validated(reducer.Options, body.options, f"part {name}", ("bodies", name, "options"), SI)
+    options = validated(reducer.Options, body.options, f"part {name}", ("options",), SI)
     source = _source(name, body, folder, reducer)
     return reducer, plugins.PartRequest(name, source, options, _file_units(body, source, reducer), body)
 
@@ -215,8 +215,8 @@ def _found_or_made(
     if stored is not None:
         stored.check()
         return stored
-    if not request.path.exists():
-        raise PartFileError(request.path, f"there is no such file; correct bodies.{request.name}.source")
+    if not files[0].exists():
+        raise PartFileError(files[0], f"there is no such file; correct bodies.{request.name}.source")
     element, reduced_here = _read(reducer, request, body, settings)
     made_from = {"recipe": text, "source": str(body.source), "source_sha256": files_hash(files)}
     element = _with_provenance(element, made_from)
@@ -233,7 +233,7 @@ def _read(
     part = reducer.read(request)
     place = str(request.source or f"bodies.{request.name}")
     if isinstance(part, FiniteElementModel):
-        element, ours = _from_model(part, body, settings, place), True
+        element, ours = _from_model(part, body, settings, request.name, place), True
     else:
         element, ours = _as_reduced(part, body, settings, place), False
     element = _with_provenance(element, {"name": request.name, "reducer": body.reducer})
@@ -250,8 +250,8 @@ def _as_reduced(element: SuperElement, body: Body, settings: Settings, place: st
     return at_interfaces(element, body.interfaces, settings, place)
 
 
-def _from_model(model: FiniteElementModel, body: Body, settings: Settings, place: str) -> Element:
-    model = replace(model, provenance={**model.provenance, "name": Path(place).stem, "source": place})
+def _from_model(model: FiniteElementModel, body: Body, settings: Settings, name: str, place: str) -> Element:
+    model = replace(model, provenance={**model.provenance, "name": name, "source": place})
     check_model(model, grounded=body.grounded and not body.clamped)
     if body.clamped:
         model = model.clamp(body.clamped)
