@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -16,11 +17,14 @@ from prs_model.part_files import LabelledMatrices, full_model, read_apart, read_
 from prs_model.plugins import PartRequest, Reducer
 
 from ..mtx import is_mtx, parse_mtx
-from .full_file import is_full, load_full
+from .full_file import is_full, load_full, read_full
 from .node_list import read_nodes
 from .row_map import read_row_map
 
 __all__ = ["AnsysOptions", "AnsysReducer", "load_full"]
+
+
+logger = logging.getLogger("prs_model")
 
 
 class AnsysOptions(Section):
@@ -51,7 +55,14 @@ class AnsysReducer(Reducer[AnsysOptions]):
     def read(self, part: PartRequest[AnsysOptions]) -> FiniteElementModel:
         """The full matrices; node components of an archive are node sets. Raises PartFileError."""
         table, components = read_nodes(part.path.parent / part.options.coordinates)
-        matrices = load_full(part.path) if is_full(part.path) else self._exported(part)
+        matrices, held = read_full(part.path) if is_full(part.path) else (self._exported(part), np.zeros(0, dtype=int))
+        strangers = np.setdiff1d(table.labels, np.concatenate([matrices.nodes, held]))
+        if len(strangers):
+            listed, name = f"{strangers[0]}" + " .." * (len(strangers) > 1), part.path.name
+            logger.warning(
+                "%s: %d of its nodes (%s) have no rows in %s: constrained, or is it the list of another part?",
+                *(table.source.name, len(strangers), listed, name),
+            )
         sets = {name: table.places(np.array(nodes), table.source) for name, nodes in components.items()}
         return full_model(matrices, table, part.file_units, node_sets=sets)
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array
 
+from prs_model.arrays import IntArray
 from prs_model.errors import PartFileError
 from prs_model.part_files import LabelledMatrices, read_apart
 
@@ -21,16 +22,21 @@ def load_full(path: str | Path) -> LabelledMatrices:
     Constrained DOFs have no rows. Raises PartFileError for a file that is damaged, unsymmetric, with a lumped mass, or
     with other DOFs than displacements and rotations; MissingExtraError without ansys-mapdl-reader.
     """
-    path = Path(path)
+    return read_full(Path(path))[0]
+
+
+def read_full(path: Path) -> tuple[LabelledMatrices, IntArray]:
+    """As `load_full`, and the nodes that have constrained DOFs."""
     found = read_apart(f"{__name__}:read_arrays", path, extra=EXTRA)
     n = len(found["nodes"])
-    return LabelledMatrices(
+    matrices = LabelledMatrices(
         source=path,
         stiffness=_both_triangles(found, "k", n),
         mass=_both_triangles(found, "m", n),
         nodes=found["nodes"],
         components=found["components"],
     )
+    return matrices, found["held"]
 
 
 def read_arrays(path: Path) -> dict[str, NDArray[Any]]:
@@ -48,11 +54,12 @@ def read_arrays(path: Path) -> dict[str, NDArray[Any]]:
     rows, stiffness, mass = file.load_km(sort=False)
     if stiffness is None or mass is None:
         raise ValueError("has no stiffness or no mass: write it in a modal analysis (ANTYPE,MODAL and WRFULL)")
-    _check_diagonal(file.read_record(header["ptrDIAGK"]), stiffness, "stiffness")
-    _check_diagonal(file.read_record(header["ptrDIAGM"]), mass, "mass")
     kept = _unconstrained(rows, file.const)
+    _check_diagonal(file.read_record(header["ptrDIAGK"]), stiffness, kept, "stiffness")
+    _check_diagonal(file.read_record(header["ptrDIAGM"]), mass, kept, "mass")
     arrays: dict[str, NDArray[Any]] = {
         "nodes": rows[kept, 0].astype(np.int64),
+        "held": np.unique(file.const[:, 0]).astype(np.int64),
         "components": _components(path, rows[kept, 1], int(header["numdof"])),
     }
     for name, matrix in (("k", stiffness), ("m", mass)):
@@ -69,10 +76,10 @@ def _check_header(header: dict[str, Any], size: int) -> None:
         raise ValueError(f"has {size} bytes, its header says {header['ptrEND'] * 4}: cut off")
 
 
-def _check_diagonal(said: NDArray[Any], matrix: Any, name: str) -> None:
-    """The file holds both diagonals a second time."""
+def _check_diagonal(said: NDArray[Any], matrix: Any, kept: NDArray[Any], name: str) -> None:
+    """The file holds both diagonals a second time, with something else where a DOF is constrained."""
     found = matrix.diagonal()
-    if len(said) < len(found) or np.any(np.abs(said[: len(found)] - found) > 1e-9 * np.abs(found).max(initial=0.0)):
+    if len(said) < len(found) or np.any(np.abs(said[: len(found)] - found)[kept] > 1e-9 * np.abs(found).max(initial=0)):
         raise ValueError(f"the diagonal of the {name} is not the one that the file says apart: damaged")
 
 
