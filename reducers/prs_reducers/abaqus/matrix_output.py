@@ -57,9 +57,9 @@ def read_matrices(text: str, stiffness: Path, mass: Path, mesh: LabelledMesh) ->
 
 
 def _entries(text: str, path: Path) -> Entries:
+    if "*" in text:
+        text = "\n".join(_without_comment(line, path) for line in text.splitlines())
     plain = text.replace(",", " ")
-    if "*" in plain:
-        plain = "\n".join(_without_comment(line, path) for line in plain.splitlines())
     width = next((len(line.split()) for line in plain.splitlines() if line.strip()), 0)
     if width not in (3, 5):
         raise PartFileError(
@@ -120,15 +120,14 @@ def _found(entries: Entries, wanted: IntArray, labels: IntArray) -> IntArray:
 
 
 def _matrix(entries: Entries, rows: IntArray, columns: IntArray, size: int) -> csr_array:
-    """Both triangles, whether the file has them or one."""
+    """Both triangles, whether the file has them or one, whose entries may lie on either side of the diagonal here."""
     if max(rows.max(), columns.max()) >= size:
         raise PartFileError(entries.path, f"has row {max(rows.max(), columns.max()) + 1}, the stiffness {size}")
-    keys = np.sort(rows * size + columns)
-    if np.any(np.diff(keys) == 0):
+    keys, inner = rows * size + columns, np.flatnonzero(rows != columns)
+    if len(np.unique(keys)) < len(keys):
         raise PartFileError(entries.path, "has two values for one row and column: damaged, or two files in one")
     values = entries.values
-    if not (np.any(rows < columns) and np.any(rows > columns)):
-        inner = rows != columns
+    if not np.any(np.isin(columns[inner] * size + rows[inner], keys)):
         values = np.append(values, values[inner])
         rows, columns = np.append(rows, columns[inner]), np.append(columns, rows[inner])
     return csr_array(coo_array((values, (rows, columns)), shape=(size, size)))
