@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -20,19 +22,22 @@ Arrays = dict[str, NDArray[Any]]
 def list_op4(path: Path) -> Arrays:
     """The shape (2,) of every matrix, by name in upper case. Raises ValueError."""
     op4 = _checked_op4(path)
-    names, sizes, _, _ = op4.dir(str(path), verbose=False)
+    with _told("OP4"):
+        names, sizes, _, _ = op4.dir(str(path), verbose=False)
     return {name.upper(): np.array(size, dtype=np.int64) for name, size in zip(names, sizes, strict=True)}
 
 
 def read_op4(path: Path, stiffness: str, mass: str) -> Arrays:
     """Both matrices (n, n). Raises ValueError naming those that are there, when one is not."""
     op4 = _checked_op4(path)
-    names = [name.upper() for name in op4.dir(str(path), verbose=False)[0]]
+    with _told("OP4"):
+        names = [name.upper() for name in op4.dir(str(path), verbose=False)[0]]
     found = {}
     for kind, name in (("stiffness", stiffness.upper()), ("mass", mass.upper())):
         if names.count(name) != 1:
             raise ValueError(f"it has {names.count(name)} matrices {name}, expected one; it has {', '.join(names)}")
-        matrix, _, type_ = op4.load(str(path), [name.lower()], into="dct", sparse=False)[name.lower()]
+        with _told("OP4"):
+            matrix, _, type_ = op4.load(str(path), [name.lower()], into="dct", sparse=False)[name.lower()]
         found[kind] = _real(matrix, name, int(type_))
     return found
 
@@ -44,6 +49,17 @@ def _real(matrix: NDArray[Any], name: str, kind: int) -> NDArray[Any]:
     if rows != columns:
         raise ValueError(f"{name} is {rows}x{columns}, expected a square matrix")
     return np.asarray(matrix, dtype=float)
+
+
+@contextmanager
+def _told(kind: str) -> Iterator[None]:
+    """What pyyeti makes of damaged files, said as what is wrong."""
+    try:
+        yield
+    except MemoryError:
+        raise
+    except Exception as error:
+        raise ValueError(f"cannot be read as {kind}: damaged, or of another kind ({error!r})") from error
 
 
 def _checked_op4(path: Path) -> Any:
@@ -63,7 +79,8 @@ def read_nas2cam(op2: Path, op4: Path) -> Arrays:
     _checked_op4(op4)
     from pyyeti.nastran import rdnas2cam
 
-    nas = rdnas2cam(str(op2), str(op4))
+    with _told("a nas2cam pair"):
+        nas = rdnas2cam(str(op2), str(op4))
     found: Arrays = {"superelements": np.asarray(nas["selist"], dtype=np.int64).reshape(-1, 2)}
     for number in found["superelements"][:, 0].tolist():
         if number not in nas["kaa"] or number not in nas["maa"]:
