@@ -15,6 +15,7 @@ from prs_model.arrays import FloatArray, IntArray
 from prs_model.errors import PartFileError
 
 from .gmsh_labels import node_labels
+from .gmsh_sections import check_sections
 
 Named = Mapping[str, list[tuple[int, IntArray]]]
 """For each group of the file: the cell blocks it is made of, and which of their cells."""
@@ -78,6 +79,8 @@ def read_cells(path: Path) -> Any:
         ) from error
     if np.ndim(mesh.points) != 2 or np.shape(mesh.points)[1] != 3 or not np.all(np.isfinite(mesh.points)):
         raise PartFileError(path, f"points have shape {np.shape(mesh.points)}, expected (n, 3) finite numbers")
+    if path.suffix.lower() == ".msh":
+        check_sections(path)
     return mesh
 
 

@@ -21,6 +21,7 @@ from prs_model.finite_elements import FiniteElementModel
 from prs_model.plugins import PartRequest, Reducer
 
 from .mesh_file import TetrahedralMesh, read_mesh
+from .mid_sides import check_mid_sides
 from .tetrahedra import Material, assemble, face_areas, outer_faces
 
 logger = logging.getLogger("prs_model")
@@ -116,6 +117,8 @@ def solid_model(mesh: TetrahedralMesh, options: SolidOptions, scale: float = 1.0
 
 def _skin(mesh: TetrahedralMesh) -> IntArray:
     try:
+        if mesh.elements.shape[1] == 10:
+            check_mid_sides(mesh.elements)
         return outer_faces(mesh.elements)
     except ValueError as error:
         raise PartFileError(mesh.source, str(error)) from error

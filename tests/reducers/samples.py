@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 from pathlib import Path
 
+import meshio
 import numpy as np
 from scipy.sparse import csr_array
 
@@ -29,6 +30,7 @@ ANY_NUMBER = {"*: another digit*": ONCE, "*: a bit flipped*": ONCE}
 UNCOUNTED = {"*: a line missing*": "the format does not say how many entries there are, and zeros have none"}
 SHAPE = "another shape of a mesh is a mesh: a coordinate stands there once, and a deck does not count its elements"
 ANY_SHAPE = {f"*: {damage}*": SHAPE for damage in ("another digit", "a bit flipped", "a line missing")}
+ANY_SET = {"*.inp: another digit*": "which nodes a set names, nothing else says"}
 HELD = "a part that is held has no rigid motion to check, and each number on the diagonal stands there once"
 
 
@@ -46,6 +48,29 @@ def gmsh(folder: Path) -> Sample:
     return Sample("solid", path, MM, {"material": STEEL}, SIDES, mass=MASS)
 
 
+def gmsh_text(folder: Path) -> Sample:
+    """The same mesh as text, its shape hardly protected."""
+    sample = gmsh(folder)
+    meshio.write(sample.path, meshio.read(sample.path), file_format="gmsh22", binary=False)
+    return replace(sample, unseen=ANY_SHAPE)
+
+
+def gmsh_41(folder: Path) -> Sample:
+    """A bracket as gmsh writes it today, text of version 4.1."""
+    bores = {"foot": {"set": "IF1"}, "head": {"set": "IF2"}}
+    volume = 113420.17763138447e-9  # m^3, of the CAD body
+    return Sample(
+        "solid",
+        DATA / "calculix" / "bracket.msh",
+        MM,
+        {"material": STEEL},
+        bores,
+        mass=STEEL["density"] * volume,
+        accuracy=1e-3,
+        unseen=ANY_SHAPE | {"*: units m-N-kg-s": "a bracket of 100 m is as sound as one of 100 mm; its mass is said"},
+    )
+
+
 def solid_deck(folder: Path) -> Sample:
     path = deck(block(), folder / "part.inp")
     return Sample("solid", path, MM, {"material": STEEL}, SIDES, mass=MASS, unseen=ANY_SHAPE)
@@ -61,7 +86,7 @@ def calculix(folder: Path) -> Sample:
         lines = (f"{r + 1} {c + 1}  {v:.13e}" for r, c, v in zip(rows, columns, values, strict=True))
         (folder / f"part{suffix}").write_text("\n".join(lines) + "\n")
     (folder / "part.dof").write_text("".join(f"{node + 1}.{axis + 1}\n" for node, axis in model.dofs))
-    return Sample("calculix", folder / "part.sti", MM, {}, SIDES, mass=MASS)
+    return Sample("calculix", folder / "part.sti", MM, {}, SIDES, mass=MASS, unseen=ANY_SET)
 
 
 def abaqus(folder: Path) -> Sample:
@@ -70,7 +95,7 @@ def abaqus(folder: Path) -> Sample:
     deck(block(), folder / "part.inp")
     for name, matrix in (("STIF1", model.stiffness), ("MASS1", model.mass)):
         (folder / f"part_{name}.mtx").write_text("".join(entries(matrix, 1e-3)))
-    return Sample("abaqus", folder / "part_STIF1.mtx", MM, {"mesh": "part.inp"}, SIDES, mass=MASS)
+    return Sample("abaqus", folder / "part_STIF1.mtx", MM, {"mesh": "part.inp"}, SIDES, mass=MASS, unseen=ANY_SET)
 
 
 def matrix_market(folder: Path) -> Sample:
@@ -174,11 +199,11 @@ def extptfm(folder: Path) -> Sample:
 
 
 OWN: tuple[Callable[[Path], Sample], ...] = (
-    npz, gmsh, solid_deck, calculix, abaqus, matrix_market, matrix_market_of_others,
+    npz, gmsh, gmsh_text, solid_deck, calculix, abaqus, matrix_market, matrix_market_of_others,
     dmig, op4, extdb, samcef, ansys_export,
 )  # fmt: skip
 REAL: tuple[Callable[[Path], Sample], ...] = (outboard, nas2cam, subdyn, extptfm)
-BIG: tuple[Callable[[Path], Sample], ...] = (bracket, rotor)
+BIG: tuple[Callable[[Path], Sample], ...] = (bracket, rotor, gmsh_41)
 
 
 def entries(matrix: csr_array, factor: float) -> Iterable[str]:
