@@ -14,8 +14,10 @@ import numpy as np
 from prs_model.arrays import FloatArray, IntArray
 from prs_model.errors import PartFileError
 
+from .deck_nodes import coordinates_of
 from .gmsh_labels import node_labels
 from .gmsh_sections import check_sections
+from .keyword_deck import read_cards
 
 Named = Mapping[str, list[tuple[int, IntArray]]]
 """For each group of the file: the cell blocks it is made of, and which of their cells."""
@@ -27,7 +29,7 @@ DIMENSIONS = {"vertex": 0, "line": 1, "triangle": 2, "quad": 2, "tetra": 3, "hex
 
 @dataclass(frozen=True, eq=False)
 class TetrahedralMesh:
-    """points (n, 3) in the file's unit, all of them used. labels (n,): gmsh's tags of them, None for other formats.
+    """points (n, 3) in the file's unit, all of them used. labels (n,): as gmsh's .msh and decks state them, else None.
 
     elements (e, 4 or 10) in VTK's order. groups: the nodes of each named group as an array of any shape, one row per
     face for those in `surfaces`; volumes: element indices of the groups made of elements.
@@ -51,7 +53,7 @@ def read_mesh(path: Path) -> TetrahedralMesh:
     place[used] = np.arange(len(used))
     elements = compact.reshape(-1, mesh.cells[solid[0]].data.shape[1])
     named = named_groups(mesh)
-    labels = node_labels(path, mesh.points) if path.suffix.lower() == ".msh" else None
+    labels = _labels(path, np.asarray(mesh.points, dtype=float))
     surfaces = frozenset(name for name, parts in named.items() if _kinds(mesh, parts) in ({"triangle6"}, {"triangle"}))
     return TetrahedralMesh(
         source=path,
@@ -82,6 +84,19 @@ def read_cells(path: Path) -> Any:
     if path.suffix.lower() == ".msh":
         check_sections(path)
     return mesh
+
+
+def _labels(path: Path, points: FloatArray) -> IntArray | None:
+    """Labels of the points, where the file's own reader finds the same points in the same order."""
+    if path.suffix.lower() == ".msh":
+        return node_labels(path, points)
+    if path.suffix.lower() != ".inp":
+        return None
+    try:
+        labels, own = coordinates_of(read_cards(path))
+    except PartFileError:  # such as a deck of several instances, whose labels are not unique
+        return None
+    return np.array(labels, dtype=np.int64) if np.array_equal(own, points) else None
 
 
 def _solid_blocks(mesh: Any, path: Path) -> list[int]:

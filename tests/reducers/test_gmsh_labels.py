@@ -1,4 +1,4 @@
-"""Node tags of gmsh's files name the nodes of a solid, in every form of the format that states them."""
+"""Node tags of gmsh's files, in every form of the format, and labels of decks name the nodes of a solid."""
 
 from __future__ import annotations
 
@@ -11,13 +11,14 @@ import prs_model as prs
 from prs_model.finite_elements import FiniteElementModel
 from prs_reducers.gmsh_labels import node_labels
 from tests.meshes import STEEL, box, write
+from tests.reducers.decks import write_deck
 
 FIRST = 1001
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A bar in four forms of .msh, and a table of its tags: gmsh writes those of 4.1-0 from 1001 on, the others from 1."""
+    """A bar in four forms of .msh and a table of its tags; gmsh writes those of 4.1-0 from 1001 on, others from 1."""
     pytest.importorskip("gmsh", reason="gmsh meshes the bar", exc_type=(ImportError, OSError))
     from prs_machines.head_3prs.gmsh_solids import box as block
     from prs_machines.head_3prs.gmsh_solids import model
@@ -70,3 +71,13 @@ def test_labels_are_given_only_for_the_coordinates_of_the_file(tmp_path):
     assert node_labels(path, mesh.points[::-1]) is None
     path.write_bytes(path.read_bytes()[:300])
     assert node_labels(path, mesh.points) is None
+
+
+def test_labels_of_a_deck_name_the_nodes_of_a_solid(tmp_path):
+    mesh = box((0.3, 0.1, 0.1), (2, 1, 1))
+    labels = 500 - 3 * np.arange(len(mesh.points))
+    found = prs.read_part("solid", write_deck(tmp_path / "box.inp", mesh, labels), units="m-N-kg-s", material=STEEL)
+    assert isinstance(found, FiniteElementModel)
+    assert found.node_ids is not None
+    at = dict(zip(labels.tolist(), mesh.points, strict=True))
+    np.testing.assert_allclose(found.coordinates, [at[label] for label in found.node_ids.tolist()], atol=1e-15)
