@@ -67,7 +67,7 @@ def check_end(text: str, path: Path) -> None:
 def numbers(text: str, path: Path, columns: int) -> FloatArray:
     """(m, columns) numbers of text, one row a line. Raises PartFileError naming the line that is something else."""
     try:
-        found = np.loadtxt(io.StringIO(text), comments=None, ndmin=2)
+        found = np.loadtxt(io.StringIO(text.replace("D", "E")), comments=None, ndmin=2)
     except ValueError:
         found = _fortran_numbers(text, path)
     if found.shape[1] != columns:

@@ -4,20 +4,20 @@ from __future__ import annotations
 
 import logging
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.sparse import coo_array, csr_array
+from scipy.sparse import csr_array
 
 from prs_model.description.schema import Section
 from prs_model.errors import PartFileError
 from prs_model.finite_elements import FiniteElementModel
-from prs_model.part_files import LabelledMatrices, full_model, read_apart, read_text
+from prs_model.part_files import LabelledMatrices, full_model, read_text
 from prs_model.plugins import PartRequest, Reducer
 
 from ..mtx import is_mtx, parse_mtx
 from .full_file import is_full, load_full, read_full
+from .harwell_boeing import parse_harwell_boeing
 from .node_list import read_nodes
 from .row_map import read_row_map
 
@@ -85,37 +85,4 @@ class AnsysReducer(Reducer[AnsysOptions]):
 def read_matrix(path: Path) -> csr_array:
     """A symmetric matrix in Matrix Market or Harwell-Boeing format, both triangles filled. Raises PartFileError."""
     text = read_text(path)
-    if is_mtx(text):
-        return parse_mtx(text, path)
-    found = read_apart(f"{__name__}:read_harwell_boeing", path)
-    n = int(found["size"])
-    return csr_array(coo_array((found["data"], (found["rows"], found["columns"])), shape=(n, n)))
-
-
-def read_harwell_boeing(path: Path) -> dict[str, NDArray[Any]]:
-    """Triplets of a Harwell-Boeing file, through SciPy. Raises ValueError."""
-    from scipy.io import hb_read
-
-    symmetric = _is_symmetric(path)
-    matrix = coo_array(hb_read(path, spmatrix=False))
-    rows, columns = matrix.coords
-    if matrix.shape[0] != matrix.shape[1] or matrix.shape[0] > matrix.nnz:
-        raise ValueError(f"the matrix is {matrix.shape[0]}x{matrix.shape[1]} with {matrix.nnz} entries: damaged")
-    off = rows != columns
-    if symmetric and np.any(rows < columns) and np.any(rows > columns):
-        raise ValueError("says symmetric, but holds entries of both triangles")
-    if symmetric:
-        rows, columns = np.concatenate([rows, columns[off]]), np.concatenate([columns, rows[off]])
-        data = np.concatenate([matrix.data, matrix.data[off]])
-    else:
-        data = matrix.data
-    return {"rows": rows, "columns": columns, "data": data, "size": np.array(matrix.shape[0])}
-
-
-def _is_symmetric(path: Path) -> bool:
-    """The type is at the start of the third line: RSA or RUA. Raises ValueError."""
-    lines = path.read_text(encoding="latin-1").splitlines()
-    kind = lines[2][:3].upper() if len(lines) > 2 else ""
-    if kind not in ("RSA", "RUA"):
-        raise ValueError(f"is neither a Matrix Market nor a Harwell-Boeing file of an assembled real matrix ('{kind}')")
-    return kind == "RSA"
+    return parse_mtx(text, path) if is_mtx(text) else parse_harwell_boeing(text, path)
