@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 import prs_model as prs
+from prs_model.description.units import Units
 from prs_model.reduction import SuperElement
+from tests.meshes import STEEL, box, steel, write
 from tests.superelements import DATA, needs_data, reference
 
 nastran = pytest.importorskip("prs_reducers.nastran")
@@ -156,4 +158,42 @@ def test_a_system_that_refers_to_itself(tmp_path: Path) -> None:
         "GRID,1,", "CORD2R,8,9,0.,0.,0.,0.,0.,1.\n,1.,0.,0.\nCORD2R,9,8,0.,0.,0.,0.,0.,1.\n,1.,0.,0.\nGRID,1,"
     )
     with pytest.raises(prs.PartFileError, match="coordinate system 8 refers to itself"):
+        punch(tmp_path, text)
+
+
+def test_a_whole_model_is_reduced_here(tmp_path: Path) -> None:
+    """A block of steel as solid elements, and as PARAM,EXTOUT,DMIGPCH writes its matrices: the same super-element."""
+    mesh = box((0.12, 0.04, 0.03), (2, 1, 1))
+    model = steel(mesh)
+    k, n = len(model.coordinates), model.size
+    motions = np.zeros((k, 6, n))
+    motions[model.dofs[:, 0], model.dofs[:, 1], np.arange(n)] = 1.0
+    whole = SuperElement(
+        stiffness=model.stiffness.toarray(),
+        mass=model.mass.toarray(),
+        nodes=tuple(str(node + 1) for node in range(k)),
+        positions=model.coordinates,
+        motions=motions,
+    )
+    nastran.NastranReducer().write(whole, tmp_path / "block.pch", Units())
+    ends = {
+        name: {"plane": {"point": (x, 0.0, 0.0), "normal": (1, 0, 0), "tolerance": 1e-6}}
+        for name, x in (("base", 0.0), ("tip", 0.12))
+    }
+    found = prs.reduce("nastran", tmp_path / "block.pch", interfaces=ends, units=UNITS, modes=4, full=True)
+    source = write(mesh, tmp_path / "block.msh")
+    expected = prs.reduce("solid", source, interfaces=ends, units=UNITS, modes=4, material=STEEL)
+    first = found.size - found.n_modes
+    for name in ("stiffness", "mass"):
+        ours, theirs = getattr(found, name), getattr(expected, name)
+        assert np.allclose(ours[:first, :first], theirs[:first, :first], rtol=1e-7, atol=1e-8 * np.abs(theirs).max())
+    assert np.diag(found.stiffness)[first:] == pytest.approx(np.diag(expected.stiffness)[first:], rel=1e-8)
+
+
+def test_a_whole_model_that_is_not_said_to_be_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(nastran, "MOST_ROWS", 1)
+    text = "".join(line for line in BAR.splitlines(keepends=True) if ",7,0," not in line)
+    with pytest.raises(
+        prs.PartFileError, match="it has 2 rows and no modal coordinates, like a whole model: say 'full: "
+    ):
         punch(tmp_path, text)

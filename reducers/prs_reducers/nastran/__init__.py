@@ -10,7 +10,8 @@ import numpy as np
 from prs_model.description.schema import Section
 from prs_model.description.units import Units
 from prs_model.errors import PartFileError
-from prs_model.part_files import LabelledMatrices, NodeTable, read_apart, super_element
+from prs_model.finite_elements import FiniteElementModel
+from prs_model.part_files import LabelledMatrices, NodeTable, full_model, read_apart, super_element
 from prs_model.plugins import PartRequest, Reducer
 from prs_model.reduction import SuperElement
 
@@ -22,6 +23,7 @@ from .punch import punch_matrices, read_punch
 
 __all__ = ["NastranOptions", "NastranReducer", "Superelement", "matrices", "superelements"]
 
+MOST_ROWS = 5000  # of a reduced part, whose matrices are dense
 OP4, OP2 = ".op4", ".op2"
 PUNCH = (".pch", ".dmig", ".bdf", ".dat", ".nas", ".fem")
 NAMES = {OP4: ("KXX", "MXX"), OP2: ("MATK", "MATM"), **dict.fromkeys(PUNCH, ("KAAX", "MAAX"))}
@@ -37,6 +39,7 @@ class NastranOptions(Section):
     stiffness, mass: names of the matrices, else KXX, MXX (.op4), KAAX, MAAX (punch), MATK, MATM (.op2).
     modes: whether the modal coordinates are what Craig-Bampton promises, mass-normalised and not coupled elastically to
     the points, which is then checked; say 'other' where a component mode run had free points (CSET, BNDFREE).
+    full: the matrices are those of the whole model, as PARAM,EXTOUT,DMIGPCH writes without ASET; it is reduced here.
     """
 
     asm: str | None = None
@@ -47,6 +50,7 @@ class NastranOptions(Section):
     stiffness: str | None = None
     mass: str | None = None
     modes: Literal["fixed-interface", "other"] = "fixed-interface"
+    full: bool = False
 
 
 class NastranReducer(Reducer[NastranOptions]):
@@ -54,24 +58,25 @@ class NastranReducer(Reducer[NastranOptions]):
         "Nastran superelement: EXTSEOUT .op4 or .op2, nas2cam .op2, DMIG punch (also OptiStruct)"
     )
     Options: ClassVar[type[Section]] = NastranOptions
-    gives = "reduced"
+    gives = "either"
     units = "asked"
     writes = (".op4", ".pch")
 
-    def read(self, part: PartRequest[NastranOptions]) -> SuperElement:
+    def read(self, part: PartRequest[NastranOptions]) -> FiniteElementModel | SuperElement:
         """Read the part. Scalar points are modal coordinates; a grid's motions are in its own output system.
 
         Raises PartFileError or MissingExtraError.
         """
         matrices, table, turned = _read(part)
+        said = {"output systems": turned} if turned else {}
+        if part.options.full:
+            return full_model(matrices, _with_rows(table, matrices), part.file_units, provenance=said)
+        if len(matrices.nodes) > MOST_ROWS and not np.any(matrices.is_mode):
+            found = f"it has {len(matrices.nodes)} rows and no modal coordinates"
+            raise PartFileError(part.path, f"{found}, like a whole model: say 'full: true' to have it reduced here")
         modal = part.options.modes == "fixed-interface" and bool(np.any(matrices.is_mode))
-        return super_element(
-            matrices,
-            table,
-            part.file_units,
-            modes="fixed-interface" if modal else "",
-            provenance={"output systems": turned} if turned else {},
-        )
+        modes = "fixed-interface" if modal else ""
+        return super_element(matrices, table, part.file_units, modes=modes, provenance=said)
 
     def files(self, part: PartRequest[NastranOptions]) -> tuple[Path, ...]:
         """The source and its companions."""
@@ -113,6 +118,13 @@ def _read(part: PartRequest[NastranOptions]) -> tuple[LabelledMatrices, NodeTabl
         return read_nas2cam(part.path, _beside(part, options.op4, OP4), options.superelement)
     read = read_extdb if suffix == OP2 else read_punch
     return *read(part.path, grids, *names), ""
+
+
+def _with_rows(table: NodeTable, matrices: LabelledMatrices) -> NodeTable:
+    """Those points that the matrices have rows of: held ones have none."""
+    kept = np.isin(table.labels, matrices.nodes)
+    frames = None if table.frames is None else table.frames[kept]
+    return NodeTable(table.source, table.labels[kept], table.coordinates[kept], frames)
 
 
 def _suffix(path: Path) -> str:
