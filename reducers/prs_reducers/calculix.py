@@ -17,7 +17,8 @@ from prs_model.part_files import LabelledMatrices, read_text
 from prs_model.plugins import PartRequest, Reducer
 
 from .labelled_mesh import LabelledMesh
-from .meshed_part import meshed_model, missing_rows, sentence_of
+from .mesh_agreement import missing_rows, sentence_of
+from .meshed_part import meshed_model
 from .number_table import read_table, whole_numbers
 from .part_mesh import mesh_files, read_part_mesh
 

@@ -145,8 +145,16 @@ def _surfaces(
         if card.keyword == "SURFACE" and card.options.get("TYPE", "ELEMENT").upper() == "ELEMENT":
             faces = [face for line, fields in card.data for face in _faces(card, line, fields, elements, members)]
             if faces:
-                surfaces[card.option("NAME").strip('"')] = faces
+                surfaces[card.option("NAME").strip('"')] = _by_shape(faces)
     return surfaces
+
+
+def _by_shape(faces: list[tuple[IntArray, IntArray]]) -> list[tuple[IntArray, IntArray]]:
+    """Faces with as many corners and mid-side nodes as each other, in one pair of arrays."""
+    shapes: dict[tuple[int, int], list[tuple[IntArray, IntArray]]] = {}
+    for corners, middles in faces:
+        shapes.setdefault((corners.shape[1], middles.shape[1]), []).append((corners, middles))
+    return [(np.concatenate([c for c, _ in each]), np.concatenate([m for _, m in each])) for each in shapes.values()]
 
 
 def _faces(

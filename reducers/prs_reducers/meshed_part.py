@@ -1,4 +1,4 @@
-"""Labelled matrices and a labelled mesh made one finite-element model, as far as both agree."""
+"""Labelled matrices and a labelled mesh made one finite-element model."""
 
 from __future__ import annotations
 
@@ -6,23 +6,14 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
-from scipy.sparse import csr_array
 
-from prs_model.arrays import BoolArray, FloatArray, IntArray
 from prs_model.description.units import Dimension, Units
-from prs_model.errors import PartFileError, short
 from prs_model.finite_elements import FiniteElementModel
 from prs_model.part_files import LabelledMatrices, full_model
 
 from .labelled_mesh import LabelledMesh
+from .mesh_agreement import check_against_mesh
 from .solid_faces import area_shares, outer_surface
-
-RESISTING = 1e-7
-"""A row's force in rigid motion, over the sum of its terms' sizes, that is more than round-off of the file's digits."""
-UNEQUAL = 1e-9
-"""A difference between a mass along x and y, over the nodes' own, that is more than round-off of the file's digits."""
-FEW = 30
-"""Rows that one damaged number or line can reach."""
 
 
 def meshed_model(
@@ -30,8 +21,7 @@ def meshed_model(
 ) -> FiniteElementModel:
     """The model with the mesh's sets, areas and outer surface, in SI.
 
-    Raises PartFileError when nodes lack coordinates, a row of a solid has no stiffness or no mass, its
-    mass differs along x, y and z, or rigid motion costs energy where no held node is near.
+    Raises PartFileError when nodes lack coordinates, or rows of solids are none of such a mesh.
     """
     table, square = mesh.table, Dimension(length=2).factor(units)
     triangles, areas = outer_surface(mesh.solids, table.coordinates)
@@ -49,123 +39,9 @@ def meshed_model(
         triangles=triangles if len(triangles) else None,
         provenance={"source": str(matrices.source), **provenance},
     )
-    _check_complete(model, mesh, matrices)
-    _check_neighbours(model, mesh, matrices)
-    _check_mass(model, mesh, matrices)
-    _check_rows_far_from_held(model, mesh, matrices)
+    check_against_mesh(model, mesh, matrices)
     return replace(
         model,
         areas=areas * square if len(triangles) else None,
         set_weights={name: weights[name][nodes] * square for name, nodes in surfaces.items()},
     )
-
-
-def missing_rows(matrices: LabelledMatrices, mesh: LabelledMesh) -> IntArray:
-    """(node, component) pairs (m, 2) of solid elements that have no row: motions that are held, or a truncated file."""
-    places = mesh.table.places(matrices.nodes, matrices.source)
-    there = np.zeros((len(mesh.table.labels), 6), dtype=bool)
-    there[places, matrices.components] = True
-    absent = ~there[mesh.in_solids, :3]
-    rows, components = np.nonzero(absent)
-    return np.column_stack([mesh.in_solids[rows], components])
-
-
-def _check_complete(model: FiniteElementModel, mesh: LabelledMesh, matrices: LabelledMatrices) -> None:
-    solid = np.zeros(len(model.coordinates), dtype=bool)
-    solid[mesh.in_solids] = True
-    of_solid = solid[model.dofs[:, 0]] & (model.dofs[:, 1] < 3)
-    for name, matrix in (("stiffness", model.stiffness), ("mass", model.mass)):
-        empty = np.flatnonzero(of_solid & (matrix.diagonal() <= 0.0))
-        if len(empty):
-            label = mesh.table.labels[model.dofs[empty[0], 0]]
-            raise PartFileError(
-                matrices.source,
-                f"{len(empty)} rows of solid elements have no {name}, the first at node {label}: the {name} file is "
-                "truncated, or of another part",
-            )
-
-
-def _check_neighbours(model: FiniteElementModel, mesh: LabelledMesh, matrices: LabelledMatrices) -> None:
-    """Nodes that act on each other are in one element, where nothing but solid elements joins them."""
-    if mesh.tied or len(mesh.others):
-        return
-    entries = model.stiffness.tocoo()
-    rows, columns = entries.coords
-    sizes = np.sqrt(np.abs(model.stiffness.diagonal()))
-    strong = np.abs(entries.data) > UNEQUAL * sizes[rows] * sizes[columns]
-    nodes, count = model.dofs[:, 0], len(model.coordinates)
-    acting = np.unique(nodes[rows[strong]] * count + nodes[columns[strong]])
-    pairs = [(each[:, :, None] * count + each[:, None, :]).ravel() for each in mesh.solids.values()]
-    alone = np.setdiff1d(acting, np.concatenate(pairs or [acting]))
-    if len(alone):
-        one, other = mesh.table.labels[[alone[0] // count, alone[0] % count]]
-        raise PartFileError(
-            matrices.source,
-            f"nodes {one} and {other} act on each other, but share no element of {mesh.table.source.name}: rows in "
-            "another order, a damaged element, or the mesh of another part",
-        )
-
-
-def _check_mass(model: FiniteElementModel, mesh: LabelledMesh, matrices: LabelledMatrices) -> None:
-    """A solid weighs the same along x, y and z: its mass is a number for each pair of nodes, times the identity."""
-    only_solid = np.zeros(len(model.coordinates), dtype=bool)
-    only_solid[np.setdiff1d(mesh.in_solids, mesh.others)] = True
-    along = []
-    whole = np.all(model.rows[:, :3] >= 0, axis=1) & only_solid
-    for axis in range(3):
-        rows = model.rows[whole, axis]
-        along.append(model.mass[rows][:, rows])
-    roots = np.sqrt(np.abs(along[0].diagonal()))
-    for axis in (1, 2):
-        apart = csr_array(along[axis] - along[0]).tocoo()
-        row, column = apart.coords
-        wrong = np.flatnonzero(np.abs(apart.data) > UNEQUAL * roots[row] * roots[column])
-        if len(wrong):
-            label = mesh.table.labels[np.flatnonzero(whole)[row[wrong[0]]]]
-            raise PartFileError(
-                matrices.source,
-                f"the mass of node {label} differs along x and {'xyz'[axis]}, which that of a solid does not: rows in "
-                "another order or a damaged number in the mass file",
-            )
-
-
-def _check_rows_far_from_held(model: FiniteElementModel, mesh: LabelledMesh, matrices: LabelledMatrices) -> None:
-    """In rigid motion only nodes in an element with a held node resist; a row elsewhere that does is a wrong row.
-
-    A part without a held node is left to the physics gate, unless a single row is wrong by too little for it.
-    """
-    near = _beside(mesh, missing_rows(matrices, mesh)[:, 0])
-    held = bool(np.any(near))
-    near[mesh.others] = True
-    rows = np.flatnonzero(~near[model.dofs[:, 0]])
-    bad = _resistance(model)[rows] > RESISTING
-    if np.any(bad) and (held or np.count_nonzero(bad) <= FEW):
-        node, component = model.dofs[rows[np.argmax(bad)]]
-        raise PartFileError(
-            matrices.source,
-            f"{np.count_nonzero(bad)} rows resist rigid motion though no held node is near (the first is node "
-            f"{mesh.table.labels[node]} u{'xyz'[component % 3]}): rows in another order, a damaged number, or the mesh "
-            "of another part",
-        )
-
-
-def _beside(mesh: LabelledMesh, held: IntArray) -> BoolArray:
-    """Nodes that share an element with a held one."""
-    is_held, near = np.zeros((2, len(mesh.table.labels)), dtype=bool)
-    is_held[held] = True
-    for nodes in mesh.solids.values():
-        near[nodes[np.any(is_held[nodes], axis=1)]] = True
-    return near
-
-
-def _resistance(model: FiniteElementModel) -> FloatArray:
-    """(n,): |K phi| over |K| |phi|, term by term, the largest of six rigid motions."""
-    phi = model.rigid_body_modes(about=model.coordinates.mean(axis=0))
-    size = csr_array(abs(model.stiffness)) @ abs(phi)
-    return np.asarray(np.max(np.abs(model.stiffness @ phi) / np.where(size > 0.0, size, 1.0), axis=1))
-
-
-def sentence_of(pairs: IntArray, mesh: LabelledMesh) -> str:
-    """The first few of (node, component) pairs, as ``10 uy, 14 uz ..``."""
-    names = [f"{mesh.table.labels[node]} u{'xyz'[component]}" for node, component in pairs[:4]]
-    return short(", ".join(names)) + (" .." if len(pairs) > 4 else "")
