@@ -172,6 +172,12 @@ def test_damaged_exports_are_refused(export: Path, name: str, change: Callable[[
 
 
 @needs_data
+def test_the_unit_in_a_heading_counts(export: Path) -> None:
+    with pytest.raises(prs.PartFileError, match=r"nodes\.txt: is in m, and 'units' says mm"):
+        prs.read_part("ansys", export / "k.txt", units="mm-N-tonne-s", **OPTIONS)
+
+
+@needs_data
 def test_the_wrong_order_of_nodes_fails_the_gate(export: Path, places: tuple[IntArray, FloatArray]) -> None:
     swapped = places[0].copy()
     swapped[[3, 40]] = swapped[[40, 3]]
@@ -212,13 +218,17 @@ CMBLOCK,BORE    ,NODE,       3  ! users node component
 def test_archives_give_places_axes_and_node_components(tmp_path: Path) -> None:
     path = tmp_path / "part.cdb"
     path.write_text(ARCHIVE)
-    table, sets = read_nodes(path)
+    nodes = read_nodes(path)
+    table = nodes.table
     assert table.labels.tolist() == [7, 8, 12]
     np.testing.assert_array_equal(table.coordinates, [[0.0, 1.0, 0.0], [2.0, 0.0, -3.0], [0.0, 0.0, 0.0]])
     assert table.frames is not None
     np.testing.assert_allclose(table.frames[2], [[0, -1, 0], [1, 0, 0], [0, 0, 1]], atol=1e-15)
     np.testing.assert_array_equal(table.frames[:2], [np.eye(3)] * 2)
-    assert sets == {"BORE": (7, 8, 12)}
+    assert nodes.components == {"BORE": (7, 8, 12)}
+    assert nodes.length is None
+    path.write_text(f"/UNITS,MPA\n{ARCHIVE}")
+    assert read_nodes(path).length == "mm"
     path.write_text(ARCHIVE.replace("        12,         3", "        12,         4"))
     with pytest.raises(prs.PartFileError, match="holds 3 nodes and says 4"):
         read_nodes(path)
@@ -233,7 +243,7 @@ def test_a_listing_of_nlist_has_pages_and_angles(tmp_path: Path) -> None:
     path.write_text(
         f"{heading}      1  0.0  0.5  1.0   0.00  90.00   0.00\n\n{heading}      2 1.0 0.0 0.0 0.0 0.0 0.0\n"
     )
-    table, _ = read_nodes(path)
+    table = read_nodes(path).table
     np.testing.assert_array_equal(table.coordinates, [[0.0, 0.5, 1.0], [1.0, 0.0, 0.0]])
     assert table.frames is not None
     np.testing.assert_allclose(table.frames[0], [[1, 0, 0], [0, 0, -1], [0, 1, 0]], atol=1e-15)
@@ -242,7 +252,7 @@ def test_a_listing_of_nlist_has_pages_and_angles(tmp_path: Path) -> None:
 def test_a_table_of_workbench_writes_short_decimal_commas(tmp_path: Path) -> None:
     path = tmp_path / "nodes.txt"
     path.write_text("Knotennummer\tX-Position (m)\tY-Position (m)\tZ-Position (m)\t\r\n15\t-5,e-002\t0,15\t0,\t\r\n")
-    table, _ = read_nodes(path)
+    table = read_nodes(path).table
     np.testing.assert_array_equal(table.coordinates, [[-0.05, 0.15, 0.0]])
 
 

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import logging
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from prs_model.description.schema import Section
 from prs_model.errors import PartFileError
 from prs_model.finite_elements import FiniteElementModel
-from prs_model.part_files import LabelledMatrices, full_model, read_text
+from prs_model.part_files import LabelledMatrices, NodeTable, full_model, read_text
 from prs_model.plugins import PartRequest, Reducer
 
 from ..mtx import is_mtx, parse_mtx
@@ -54,17 +55,15 @@ class AnsysReducer(Reducer[AnsysOptions]):
 
     def read(self, part: PartRequest[AnsysOptions]) -> FiniteElementModel:
         """The full matrices; node components of an archive are node sets. Raises PartFileError."""
-        table, components = read_nodes(part.path.parent / part.options.coordinates)
+        listed, units = read_nodes(part.path.parent / part.options.coordinates), part.file_units
+        table = listed.table
+        if listed.length not in (None, units.length):
+            found = f"is in {listed.length}, and 'units' says {units.length}"
+            raise PartFileError(table.source, f"{found}: correct one of them, or remove the unit there")
         matrices, held = read_full(part.path) if is_full(part.path) else (self._exported(part), np.zeros(0, dtype=int))
-        strangers = np.setdiff1d(table.labels, np.concatenate([matrices.nodes, held]))
-        if len(strangers):
-            listed, name = f"{strangers[0]}" + " .." * (len(strangers) > 1), part.path.name
-            logger.warning(
-                "%s: %d of its nodes (%s) have no rows in %s: constrained, or is it the list of another part?",
-                *(table.source.name, len(strangers), listed, name),
-            )
-        sets = {name: table.places(np.array(nodes), table.source) for name, nodes in components.items()}
-        return full_model(matrices, table, part.file_units, node_sets=sets)
+        _warn_of_strangers(table, np.concatenate([matrices.nodes, held]), part.path)
+        sets = {name: table.places(np.array(nodes), table.source) for name, nodes in listed.components.items()}
+        return full_model(matrices, table, units, node_sets=sets)
 
     def files(self, part: PartRequest[AnsysOptions]) -> tuple[Path, ...]:
         """The source, then the files that the options name."""
@@ -80,6 +79,14 @@ class AnsysReducer(Reducer[AnsysOptions]):
         mass = read_matrix(folder / options.mass)
         nodes, components = read_row_map(folder / options.map, n)
         return LabelledMatrices(part.path, stiffness, mass, nodes, components)
+
+
+def _warn_of_strangers(table: NodeTable, nodes: NDArray[Any], path: Path) -> None:
+    strangers = np.setdiff1d(table.labels, nodes)
+    if len(strangers):
+        some = f"{strangers[0]}" + " .." * (len(strangers) > 1)
+        what = "have no rows in %s: constrained, or is it the list of another part?"
+        logger.warning(f"%s: %d of its nodes (%s) {what}", table.source.name, len(strangers), some, path.name)
 
 
 def read_matrix(path: Path) -> csr_array:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -12,19 +13,32 @@ from prs_model.errors import PartFileError, short
 from prs_model.part_files import NodeTable, read_text
 from prs_model.part_files.text import number
 
-NodeSets = dict[str, tuple[int, ...]]
+SYSTEMS = {"SI": "m", "MKS": "m", "UMKS": "um", "CGS": "cm", "MPA": "mm", "BFT": "ft", "BIN": "in"}
+"""Lengths of the systems of the command /UNITS."""
 
+_HEADING = re.compile(r"\bX[^\n(]*\((m|mm|cm|um|in|ft)\)", re.IGNORECASE)
+_UNITS = re.compile(r"^\s*/UNITS\s*,\s*(\w+)", re.IGNORECASE | re.MULTILINE)
 _NUMBER = re.compile(r"\d+\Z")
 _FORMAT = re.compile(r"\((\d+)i(\d+),(\d+)e(\d+)\.", re.IGNORECASE)
 _INTEGERS = re.compile(r"\((\d+)i(\d+)\)", re.IGNORECASE)
 
 
-def read_nodes(path: Path) -> tuple[NodeTable, NodeSets]:
-    """The nodes, with their axes where these are rotated, and the node components of an archive by name.
+@dataclass(frozen=True, eq=False)
+class NodeList:
+    """Nodes, with their axes where these are rotated; node components of an archive by name; the file's unit of length.
 
-    Decimal commas are read. Raises PartFileError naming the line that is wrong.
+    length: m, mm .. where a heading of Workbench or /UNITS of an archive says it.
     """
-    lines = read_text(path).splitlines()
+
+    table: NodeTable
+    components: dict[str, tuple[int, ...]]
+    length: str | None
+
+
+def read_nodes(path: Path) -> NodeList:
+    """Read a list of nodes; decimal commas are read. Raises PartFileError naming the line that is wrong."""
+    text = read_text(path)
+    lines = text.splitlines()
     blocks = [at for at, line in enumerate(lines) if line.strip().upper().startswith("NBLOCK")]
     if len(blocks) > 1:
         raise PartFileError(path, f"has {len(blocks)} NBLOCKs, expected one")
@@ -34,7 +48,16 @@ def read_nodes(path: Path) -> tuple[NodeTable, NodeSets]:
     table = np.array([[*row, 0.0, 0.0, 0.0][:7] for row in rows])
     angles = table[:, 4:]
     frames = np.array([rotated_axes(each) for each in angles]) if np.any(angles) else None
-    return NodeTable(path, table[:, 0].astype(np.int64), table[:, 1:4], frames), _components(lines, path)
+    nodes = NodeTable(path, table[:, 0].astype(np.int64), table[:, 1:4], frames)
+    return NodeList(nodes, _components(lines, path), _length(text))
+
+
+def _length(text: str) -> str | None:
+    """Of ``X-Position (mm)``, or of /UNITS,MPA."""
+    heading, command = _HEADING.search(text), _UNITS.search(text)
+    if heading is not None:
+        return heading[1].lower()
+    return SYSTEMS.get(command[1].upper()) if command is not None else None
 
 
 def rotated_axes(angles: FloatArray) -> FloatArray:
@@ -98,9 +121,9 @@ def _check_count(head: str, found: int, path: Path) -> None:
         raise PartFileError(path, f"NBLOCK holds {found} nodes and says {words[4]}: damaged")
 
 
-def _components(lines: list[str], path: Path) -> NodeSets:
+def _components(lines: list[str], path: Path) -> dict[str, tuple[int, ...]]:
     """CMBLOCK,NAME,NODE,count: a negative number ends a range that the one before it starts."""
-    sets: NodeSets = {}
+    sets: dict[str, tuple[int, ...]] = {}
     for at, line in enumerate(lines):
         words = [word.strip() for word in line.split("!")[0].split(",")]
         if words[0].upper() != "CMBLOCK" or len(words) < 4 or not words[2].upper().startswith("NODE"):
