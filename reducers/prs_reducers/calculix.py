@@ -56,8 +56,9 @@ class CalculixReducer(Reducer[CalculixOptions]):
         if not (np.array_equal(rows, mass_rows) and np.array_equal(columns, mass_columns)):
             raise PartFileError(mass, f"its entries are not at the places of those in {stiffness.name}: of another run")
         k, m = (_mirrored(len(nodes), rows, columns, values) for values in (of_k, of_m))
-        matrices = LabelledMatrices(stiffness, k, m, nodes, components)
         labelled = read_part_mesh(mesh)
+        _check_nodes(nodes, components, dof, labelled)
+        matrices = LabelledMatrices(stiffness, k, m, nodes, components)
         _check_held(matrices, labelled)
         table = replace(labelled.table, frames=None)  # the matrices are in global axes whatever *TRANSFORM says
         return meshed_model(matrices, replace(labelled, table=table), part.file_units, {"mesh": mesh.name})
@@ -125,6 +126,22 @@ def _mirrored(size: int, rows: IntArray, columns: IntArray, values: FloatArray) 
     upper = csr_array((values, (rows, columns)), shape=(size, size))
     inner = rows != columns
     return csr_array(upper + csr_array((values[inner], (columns[inner], rows[inner])), shape=(size, size)))
+
+
+def _check_nodes(nodes: IntArray, components: IntArray, path: Path, mesh: LabelledMesh) -> None:
+    """Every row is of a node of the mesh, and no two are of one motion."""
+    strangers, rows = np.setdiff1d(nodes, mesh.table.labels), np.unique(nodes * 3 + components)
+    if len(strangers):
+        what = f"{len(strangers)} of its nodes are not in {mesh.table.source.name} (the first is {strangers[0]})"
+    elif len(rows) < len(nodes):
+        what = f"{len(nodes) - len(rows)} motions have more than one row"
+    else:
+        return
+    raise PartFileError(
+        path,
+        f"{what}: the mesh of another part, or one of shells, beams or C3D8I, whose nodes CalculiX makes itself: "
+        "use C3D10, C3D20R, C3D15 or C3D8",
+    )
 
 
 def _check_held(matrices: LabelledMatrices, mesh: LabelledMesh) -> None:

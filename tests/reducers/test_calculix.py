@@ -188,6 +188,11 @@ BAD = {
     "neighbouring rows of .dof": ({"dof": swap(3000, 3001)}, "differs along x and"),
     "a row too few": ({"dof": lambda lines: lines[:-1]}, r"its last entry is 5046 5046, expected 5045 5045"),
     "a motion that is none": ({"dof": lambda lines: [*lines[:-1], "7.4\n"]}, "row 5046 is '7.4', expected node.1 to"),
+    "a node of no mesh": (
+        {"dof": lambda lines: [*lines[:-1], "9999.3\n"]},
+        r"not in full_fixed.inp \(the first is 9999",
+    ),
+    "a row twice": ({"dof": lambda lines: [*lines[:-1], lines[0]]}, "1 motions have more than one row"),
     "truncated": ({"sti": lambda lines: lines[:-5]}, r"\.sti: its last entry is .*, expected 5046 5046.*truncated"),
     "a line lost": ({"sti": lambda lines: lines[:70] + lines[71:]}, r"\.mas: its entries are not at the places"),
     "lines swapped": ({"mas": swap(900, 901)}, r"\.mas: not an upper triangle column by column"),
