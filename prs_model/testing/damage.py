@@ -31,9 +31,10 @@ INCHES = {"*: units in-lbf-slinch-s": "in inches the part is as plausible; its m
 class Outcome:
     """What became of one damage to one file.
 
-    result: refused with a message; same: read, and the part is the undamaged one to six digits; noticed: read, but with a warning;
-    unseen: another part, which nothing can notice, as the sample says with the reason; wrong: another part, silently;
-    crash, hang, memory: what no reader may do. difference: of the part from the undamaged one, where it was read.
+    result: refused with a message; same: read, and the part is the undamaged one to six digits; noticed: read, with a
+    warning; unseen: another part, which nothing can notice, as the sample says with the reason; wrong: another part,
+    silently; crash, hang, memory: what no reader may do. difference: of the part from the undamaged one, where it was
+    read, as receptances.
     """
 
     file: str

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from pathlib import Path
@@ -14,10 +15,11 @@ from prs_model import plugins
 from prs_model.description.units import Units
 from prs_model.testing import Sample
 from prs_model.testing.element import plain_element
+from prs_reducers.ansys import load_full
 from prs_reducers.mesh_file import TetrahedralMesh
 from tests.meshes import STEEL, box, steel, write
 from tests.reducers import test_ansys, test_nastran_op2, test_samcef
-from tests.superelements import DATA
+from tests.superelements import DATA, reference
 
 BLOCK, CELLS = (0.12, 0.04, 0.03), (2, 1, 1)  # m
 MASS = STEEL["density"] * float(np.prod(BLOCK))
@@ -158,6 +160,42 @@ def ansys_export(folder: Path) -> Sample:
     return Sample("ansys", folder / "k.txt", "m-N-kg-s", options, ends, mass=MASS)
 
 
+def ansys_full(folder: Path) -> Sample:
+    """The public .full file, with the coordinates that its stiffness tells (see test_ansys)."""
+    source = shutil.copy(test_ansys.ROTOR, folder / "part.full")
+    nodes, points = test_ansys.places_of(load_full(Path(source)))
+    (folder / "nodes.txt").write_text(test_ansys.listing(nodes, points))
+    free = (reference("ansys/sparse.full")["freq_hz_first"][6],)
+    return Sample("ansys", source, "m-N-kg-s", {"coordinates": "nodes.txt"}, test_ansys.FOOT, free=free)
+
+
+def rigid(folder: Path) -> Sample:
+    options = {"mass": 2.0, "inertia": {"xx": 0.1, "yy": 0.2, "zz": 0.2}, "nodes": {"tip": (0.0, 0.0, 0.1)}}
+    return Sample("rigid", options=options, interfaces={"tip": {}}, mass=2.0)
+
+
+def lumped(folder: Path) -> Sample:
+    """Two masses on a spring: omega^2 = k (1/m1 + 1/m2)."""
+    options = {
+        "nodes": {"a": (0.0, 0.0, 0.0), "b": (0.3, 0.0, 0.0)},
+        "masses": {"a": {"mass": 2.0}, "b": {"mass": 3.0}},
+        "springs": ({"between": ("a", "b"), "axial": 1e6},),
+    }
+    free = (float(np.sqrt(1e6 * (1.0 / 2.0 + 1.0 / 3.0)) / (2.0 * np.pi)),)
+    return Sample("lumped", options=options, mass=5.0, free=free)
+
+
+def beam(folder: Path) -> Sample:
+    """A bar of the block's size; its mass is exact."""
+    length, width, height = BLOCK
+    options = {
+        "nodes": {"base": (0.0, 0.0, 0.0), "tip": (length, 0.0, 0.0)},
+        "sections": {"bar": {"kind": "rectangle", "y": width, "z": height, "material": STEEL}},
+        "members": ({"between": ("base", "tip"), "section": "bar", "elements": 6, "up": (0, 0, 1)},),
+    }
+    return Sample("beam", options=options, interfaces={"base": {"node": "base"}, "tip": {"node": "tip"}}, mass=MASS)
+
+
 def outboard(folder: Path) -> Sample:
     grids = {f"g{grid}": {"node": grid} for grid in (3, 11, 19, 27)}
     return Sample("nastran", DATA / "nastran_extseout" / "outboard.op4", MM, {}, grids, mass=1590.3838)
@@ -180,15 +218,16 @@ def bracket(folder: Path) -> Sample:
 def rotor(folder: Path) -> Sample:
     source = DATA / "abaqus" / "rotorDiscTestSTIF1.mtx"
     ends = {
-        name: {"plane": {"point": (x, 0.0, 0.0), "normal": (1, 0, 0), "tolerance": 1e-6}}
-        for name, x in (("left", 0.0), ("right", 0.5))
+        name: {"plane": {"point": (0.0, 0.0, z), "normal": (0, 0, 1), "tolerance": 1e-6}}
+        for name, z in (("left", 0.0), ("right", 0.5))
     }
     return Sample("abaqus", source, "m-N-kg-s", {"mesh": "rotorDiscTest.inp"}, ends)
 
 
 def subdyn(folder: Path) -> Sample:
     source = DATA / "openfast" / "FASTSum_5MW_OC3Mnpl.SD.sum.yaml"
-    return Sample("openfast", source, interfaces={"tower": {"node": "interface"}}, grounded=True)
+    free = tuple(reference("openfast/SubDyn_OC3Mnpl")["GY_recomputed"])
+    return Sample("openfast", source, interfaces={"tower": {"node": "interface"}}, grounded=True, free=free)
 
 
 def extptfm(folder: Path) -> Sample:
@@ -202,7 +241,8 @@ OWN: tuple[Callable[[Path], Sample], ...] = (
     npz, gmsh, gmsh_text, solid_deck, calculix, abaqus, matrix_market, matrix_market_of_others,
     dmig, op4, extdb, samcef, ansys_export,
 )  # fmt: skip
-REAL: tuple[Callable[[Path], Sample], ...] = (outboard, nas2cam, subdyn, extptfm)
+REAL: tuple[Callable[[Path], Sample], ...] = (outboard, nas2cam, ansys_full, subdyn, extptfm)
+WITHOUT_FILE: tuple[Callable[[Path], Sample], ...] = (rigid, lumped, beam)
 BIG: tuple[Callable[[Path], Sample], ...] = (bracket, rotor, gmsh_41)
 
 
