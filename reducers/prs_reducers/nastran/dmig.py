@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from scipy.sparse import coo_array, csr_array
 
-from prs_model.errors import PartFileError, UnknownNameError
+from prs_model.errors import PartFileError
 from prs_model.part_files import MODE, LabelledMatrices
 from prs_model.plugins import unknown
 
@@ -148,11 +148,10 @@ def labelled(
 
 
 def _named(matrices: dict[str, Dmig], name: str, path: Path) -> Dmig:
-    try:
-        return matrices[name.upper()]
-    except KeyError:
-        missing: UnknownNameError = unknown("matrix", name.upper(), list(matrices))
-        raise PartFileError(path, f"{missing}; say which with options 'stiffness' and 'mass'") from None
+    if name.upper() not in matrices:
+        missing = unknown("matrix", name.upper(), list(matrices))
+        raise PartFileError(path, f"{missing}; say which with options 'stiffness' and 'mass'")
+    return matrices[name.upper()]
 
 
 def _said(dof: Dof) -> str:

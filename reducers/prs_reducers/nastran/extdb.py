@@ -19,6 +19,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 
@@ -29,6 +30,8 @@ from .dmig import Dmig, labelled
 from .fortran import Block, Tokens, op2_blocks
 from .geometry import Grid, System, node_table
 from .punch import grid_table
+
+T = TypeVar("T", Grid, System)
 
 DIRECTORY, EXTERNAL = "XSOP2DIR", "EXTDB"
 DMIG_KEY = (114, 1, 120)
@@ -84,12 +87,19 @@ def external(path: Path) -> External:
                     raise PartFileError(path, f"it has two matrices {name}: {INSTEAD}")
                 found.matrices[name] = _dmig(path, name, record, tokens.order)
             elif key in GRID_KEYS:
-                found.grids.update(_grids(path, record[12:], tokens.order, GRID_KEYS[key]))
+                _merge(path, found.grids, _grids(path, record[12:], tokens.order, GRID_KEYS[key]))
             elif key in SYSTEM_KEYS:
-                found.systems.update(_systems(path, record[12:], tokens.order, *SYSTEM_KEYS[key]))
+                _merge(path, found.systems, _systems(path, record[12:], tokens.order, *SYSTEM_KEYS[key]))
     if not found.matrices:
         raise PartFileError(path, f"it has no DMIG records in words of 4 bytes: {INSTEAD}")
     return found
+
+
+def _merge(path: Path, found: dict[int, T], more: dict[int, T]) -> None:
+    for number in found.keys() & more.keys():
+        if found[number] != more[number]:
+            raise PartFileError(path, f"{number} stands there twice, with different data: {INSTEAD}")
+    found.update(more)
 
 
 def _blocks(path: Path) -> tuple[Tokens, list[Block]]:

@@ -136,10 +136,9 @@ def op2_blocks(tokens: Tokens) -> Iterator[Block]:
     """
     key = tokens.key(2, 3)
     if key == 3:  # date, version and label of the run
-        for count in (3, 7, 2):
-            if count != 3:
-                tokens.key(count)
-            tokens.words(count)
+        tokens.words(key)
+        tokens.words(tokens.key(7))
+        tokens.words(tokens.key(2))
         tokens.key(-1)
         tokens.key(0)
         key = tokens.key(0, 2)

@@ -24,7 +24,7 @@ OTHER_SETS = ("ASET1", "BSET", "BSET1", "BNDFIX", "BNDFIX1", "BNDFREE", "BNDFREE
 
 @dataclass(frozen=True)
 class Companion:
-    """What one companion says. rows: of the matrices, in order, or None; whole: whether rows is by component."""
+    """What one companion says. rows: of the matrices, in order; points: the same without components."""
 
     path: Path
     grids: Mapping[int, Grid]
