@@ -12,6 +12,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from .. import plugins
+from ..arrays import FloatArray
 from ..description.messages import report
 from ..description.problems import Place, Problems
 from ..description.schema import Body, Coupling, Interface, NodeId, ReductionDefaults, Section
@@ -217,28 +218,28 @@ def _found_or_made(
         return stored
     if not files[0].exists():
         raise PartFileError(files[0], f"there is no such file; correct bodies.{request.name}.source")
-    element, reduced_here = _read(reducer, request, body, settings)
+    element, points = _read(reducer, request, body, settings)
     made_from = {"recipe": text, "source": str(body.source), "source_sha256": files_hash(files)}
     element = _with_provenance(element, made_from)
-    echo(element, request.name)
-    if store is not None and reduced_here:
+    echo(element, request.name, points)
+    if store is not None and points is not None:
         store.keep(element)
     return element
 
 
 def _read(
     reducer: plugins.Reducer[Any], request: plugins.PartRequest[Any], body: Body, settings: Settings
-) -> tuple[Element, bool]:
-    """The element past the gate, and whether its reduction was ours."""
+) -> tuple[Element, FloatArray | None]:
+    """The element past the gate, and the nodes (n, 3) [m] of the full model where the reduction was ours."""
     part = reducer.read(request)
     place = str(request.source or f"bodies.{request.name}")
     if isinstance(part, FiniteElementModel):
-        element, ours = _from_model(part, body, settings, request.name, place), True
+        element, points = _from_model(part, body, settings, request.name, place), part.coordinates
     else:
-        element, ours = _as_reduced(part, body, settings, place), False
+        element, points = _as_reduced(part, body, settings, place), None
     element = _with_provenance(element, {"name": request.name, "reducer": body.reducer})
     element.check()
-    return element, ours
+    return element, points
 
 
 def _as_reduced(element: SuperElement, body: Body, settings: Settings, place: str) -> SuperElement:

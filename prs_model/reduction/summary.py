@@ -61,12 +61,18 @@ class Summary:
         }
 
 
-def summarize(element: SuperElement, count: int = 6) -> Summary:
-    """The figures of an element, with up to `count` fixed and free frequencies. Raises PrsError for a singular one."""
+def summarize(element: SuperElement, count: int = 6, points: FloatArray | None = None) -> Summary:
+    """The figures of an element, with up to `count` fixed and free frequencies. Raises PrsError for a singular one.
+
+    points: (p, 3) [m] of the whole part, where they are known; default: the surface's and the nodes'.
+    """
     known = None if element.grounded else element.mass_properties()
     free, fixed = _frequencies(element, np.eye(element.size), count + 6), _fixed(element, count)
     elastic = free[free > FREE * free.max(initial=0.0)] if free.size else free
-    points = element.positions if element.surface is None else np.vstack([element.positions, element.surface.points])
+    whole = points is not None or element.surface is not None
+    if points is None:
+        surface = np.zeros((0, 3)) if element.surface is None else element.surface.points
+        points = np.vstack([element.positions, surface])
     size = np.ptp(points, axis=0)
     return Summary(
         name=element.name,
@@ -78,15 +84,15 @@ def summarize(element: SuperElement, count: int = 6) -> Summary:
         properties=known,
         fixed=fixed[:count],
         free=elastic[:count],
-        surprises=tuple(_surprises(known, size, elastic, seen=element.surface is not None)),
+        surprises=tuple(_surprises(known, size, elastic, whole=whole)),
     )
 
 
-def echo(element: SuperElement | TravellingElement, name: str) -> None:
+def echo(element: SuperElement | TravellingElement, name: str, points: FloatArray | None = None) -> None:
     """Log mass, size and first frequency in SI, and a warning for each figure that no part of that kind has."""
     first = element if isinstance(element, SuperElement) else element.elements[0]
     try:
-        summary = summarize(first, 1)
+        summary = summarize(first, 1, points)
     except PrsError as error:
         logger.warning("%s: no frequencies: %s", name, error)
         return
@@ -117,11 +123,11 @@ def _frequencies(element: SuperElement, basis: FloatArray, count: int) -> FloatA
     return np.asarray(np.sqrt(np.maximum(values, 0.0)) / (2.0 * np.pi))
 
 
-def _surprises(known: MassProperties | None, size: FloatArray, free: FloatArray, *, seen: bool) -> list[str]:
-    """seen: the whole part is within `size`, not only its interface nodes."""
+def _surprises(known: MassProperties | None, size: FloatArray, free: FloatArray, *, whole: bool) -> list[str]:
+    """whole: the whole part is within `size`, not only its interface nodes."""
     said, longest = [], float(size.max(initial=0.0))
     advice = "check 'units'"
-    if known is not None and seen and np.all(size > 1e-3 * longest) and known.mass > HEAVIEST * np.prod(size):
+    if known is not None and whole and np.all(size > 1e-3 * longest) and known.mass > HEAVIEST * np.prod(size):
         said.append(f"{known.mass:.4g} kg within {np.prod(size):.3g} m^3 is denser than any metal; {advice}")
     if free.size and known is not None and 2.0 * longest * free[0] > FASTEST:
         said.append(
