@@ -223,3 +223,5 @@ def test_plain_packed_and_bare_names_are_the_same_part(tmp_path):
     packed = read(DATA / "calculix" / "full_free.sti.gz")
     for source in (plain, plain.with_suffix("")):
         assert abs(read(source).stiffness - packed.stiffness).max() == 0.0
+        element = prs.reduce("calculix", source, units=UNITS, interfaces={"bore": {"set": "NIF1"}}, modes=1)
+        assert element.nodes == ("bore",)
