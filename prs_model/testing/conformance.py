@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import hashlib
-import os
-import sys
-from collections.abc import Callable, Iterator
-from contextlib import chdir, contextmanager
+from collections.abc import Callable
+from contextlib import chdir
 from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory, TemporaryFile
@@ -20,6 +18,7 @@ from ..reduction import SuperElement
 from ..reduction.summary import summarize
 from .damage import as_text, damage_table, read_apart
 from .element import plain_element
+from .pipes import standard_output_to
 from .receptance import difference, first_eigenvalue, receptances
 from .sample import Sample, figures
 from .variants import ANOTHER_KIND, PROSE
@@ -115,7 +114,7 @@ def reading_twice_gives_the_same(sample: Sample) -> None:
 
 def nothing_is_printed(sample: Sample) -> None:
     """Nothing appears on standard output, not even from compiled libraries."""
-    with TemporaryFile() as file, _standard_output_to(file.fileno()):
+    with TemporaryFile() as file, standard_output_to(file.fileno()):
         sample.read()
         file.seek(0)
         printed = file.read()
@@ -254,16 +253,3 @@ def _contents(folder: Path) -> dict[str, str]:
         for path in folder.rglob("*")
         if path.is_file()
     }
-
-
-@contextmanager
-def _standard_output_to(descriptor: int) -> Iterator[None]:
-    sys.stdout.flush()
-    kept = os.dup(1)
-    os.dup2(descriptor, 1)
-    try:
-        yield
-    finally:
-        sys.stdout.flush()
-        os.dup2(kept, 1)
-        os.close(kept)

@@ -16,16 +16,17 @@ import numpy as np
 
 from ..errors import PartFileError
 from ..part_files import child_process
-from .pipes import ending, read_all
+from .pipes import ending, read_all, standard_output_to
 
 Job = dict[str, Any]
 
 
 def run_here(job: Job, out: Path, seconds: float, path: Path) -> dict[str, Any]:
-    """For the undamaged part: in this process, which then has loaded what the reader needs."""
+    """For undamaged parts: in this process, which then has loaded what the reader needs."""
     module, name = job["function"].split(":")
-    function: Callable[..., dict[str, Any]] = getattr(import_module(module), name)
-    with warnings.catch_warnings():  # its filters are its own
+    with warnings.catch_warnings(), standard_output_to(2):  # as in a process of its own
+        warnings.simplefilter("ignore")
+        function: Callable[..., dict[str, Any]] = getattr(import_module(module), name)
         np.savez(out, allow_pickle=False, **function(*map(Path, job["paths"]), **job["arguments"]))
     return {}
 
