@@ -21,7 +21,7 @@ from tests.meshes import STEEL, box, steel, write
 from tests.reducers import test_ansys, test_nastran_op2, test_samcef
 from tests.superelements import DATA, reference
 
-BLOCK, CELLS = (0.12, 0.04, 0.03), (2, 1, 1)  # m
+BLOCK, COARSE, FINE = (0.12, 0.04, 0.03), (2, 1, 1), (3, 1, 1)  # m, cells
 MASS = STEEL["density"] * float(np.prod(BLOCK))
 MM = "mm-N-tonne-s"
 SIDES = {"base": {"set": "x0"}, "tip": {"set": "x1"}}
@@ -36,8 +36,15 @@ ANY_SET = {"*.inp: another digit*": "which nodes a set names, nothing else says"
 HELD = "a part that is held has no rigid motion to check, and each number on the diagonal stands there once"
 
 
-def block() -> TetrahedralMesh:
-    return box(BLOCK, CELLS)
+def block(cells: tuple[int, int, int] = COARSE) -> TetrahedralMesh:
+    return box(BLOCK, cells)
+
+
+def among_others(export: Callable[[Path, TetrahedralMesh], Sample], folder: Path) -> Sample:
+    """A coarse block, beside a fine one whose companions could be taken for its own."""
+    (folder / "fine").mkdir()
+    other = export(folder / "fine", block(FINE))
+    return replace(export(folder, block()), others={file.name: file for file in other.files()[1:]})
 
 
 def npz(folder: Path) -> Sample:
@@ -79,9 +86,13 @@ def solid_deck(folder: Path) -> Sample:
 
 
 def calculix(folder: Path) -> Sample:
+    return among_others(_calculix, folder)
+
+
+def _calculix(folder: Path, mesh: TetrahedralMesh) -> Sample:
     """Upper triangles, column by column, in the digits of CalculiX; all in mm, N, tonne."""
-    model = steel(block())
-    deck(block(), folder / "part.inp")
+    model = steel(mesh)
+    deck(mesh, folder / "part.inp")
     columns, rows = np.nonzero(np.tril(np.abs(model.stiffness.toarray()) + np.abs(model.mass.toarray())))
     for suffix, matrix in ((".sti", model.stiffness), (".mas", model.mass)):
         values = matrix.toarray()[rows, columns] * 1e-3
@@ -92,9 +103,13 @@ def calculix(folder: Path) -> Sample:
 
 
 def abaqus(folder: Path) -> Sample:
+    return among_others(_abaqus, folder)
+
+
+def _abaqus(folder: Path, mesh: TetrahedralMesh) -> Sample:
     """Coordinate form, both triangles, as *MATRIX OUTPUT writes it."""
-    model = steel(block())
-    deck(block(), folder / "part.inp")
+    model = steel(mesh)
+    deck(mesh, folder / "part.inp")
     for name, matrix in (("STIF1", model.stiffness), ("MASS1", model.mass)):
         (folder / f"part_{name}.mtx").write_text("".join(entries(matrix, 1e-3)))
     return Sample("abaqus", folder / "part_STIF1.mtx", MM, {"mesh": "part.inp"}, SIDES, mass=MASS, unseen=ANY_SET)
@@ -145,8 +160,12 @@ def samcef(folder: Path) -> Sample:
 
 
 def ansys_export(folder: Path) -> Sample:
+    return among_others(_ansys_export, folder)
+
+
+def _ansys_export(folder: Path, mesh: TetrahedralMesh) -> Sample:
     """APDL's *EXPORT of both matrices as MMF, the nodes of their rows, and a list of nodes with decimal commas."""
-    model = steel(block())
+    model = steel(mesh)
     labels = np.arange(1, len(model.coordinates) + 1)
     (folder / "k.txt").write_text(test_ansys.market(model.stiffness.toarray()))
     (folder / "m.txt").write_text(test_ansys.market(model.mass.toarray()))
@@ -198,7 +217,9 @@ def beam(folder: Path) -> Sample:
 
 def outboard(folder: Path) -> Sample:
     grids = {f"g{grid}": {"node": grid} for grid in (3, 11, 19, 27)}
-    return Sample("nastran", DATA / "nastran_extseout" / "outboard.op4", MM, {}, grids, mass=1590.3838)
+    data = DATA / "nastran_extseout"
+    others = {f"outboard{suffix}": data / f"inboard{suffix}" for suffix in (".asm", ".pch")}
+    return Sample("nastran", data / "outboard.op4", MM, {}, grids, mass=1590.3838, others=others)
 
 
 def nas2cam(folder: Path) -> Sample:
