@@ -129,7 +129,8 @@ def _surprises(known: MassProperties | None, size: FloatArray, free: FloatArray,
     advice = "check 'units'"
     if known is not None and whole and np.all(size > 1e-3 * longest) and known.mass > HEAVIEST * np.prod(size):
         said.append(f"{known.mass:.4g} kg within {np.prod(size):.3g} m^3 is denser than any metal; {advice}")
-    if free.size and known is not None and 2.0 * longest * free[0] > FASTEST:
+    reach = longest if known is not None else float(size.min(initial=np.inf)) if whole else 0.0
+    if free.size and 2.0 * reach * free[0] > FASTEST:
         said.append(
             f"its first free frequency, {free[0]:.4g} Hz, is too high for a part {longest:.4g} m long; {advice}"
         )
