@@ -126,8 +126,6 @@ class TestAssembly:
     def test_which_superelements_there_are_is_said(self) -> None:
         with pytest.raises(prs.PartFileError, match=r"superelement 7 is not there, .* one of 101, 102 "):
             read(NAS2CAM, superelement=7)
-        with pytest.raises(prs.PartFileError, match="found no 'superelement'"):
-            read(NAS2CAM)
 
     def test_a_cut_op2_file(self, tmp_path: Path) -> None:
         shutil.copy(NAS2CAM.with_suffix(".op4"), tmp_path)
@@ -215,7 +213,7 @@ def test_in_millimetres_the_numbers_become_si() -> None:
 
 
 def test_partial_components_and_words_of_eight_bytes() -> None:
-    """pyyeti's own test files, where they are installed: a point of one component, by MSC 2017 in 64 bits and by NX."""
+    """pyyeti's own test files, if installed: a point of one component, by EXTSEOUT and by MSC 2017 in 64 bits."""
     import pyyeti
 
     folder = Path(pyyeti.__file__).parent / "tests" / "nas2cam_extseout"
@@ -225,9 +223,6 @@ def test_partial_components_and_words_of_eight_bytes() -> None:
     reduced.check()
     assert (reduced.size, reduced.n_modes) == (29, 10)
     assert reduced.labels[18] == "475.uy"
-    for release in ("msc2017", "nx2021"):
-        residual = read(folder / f"nas2cam_notall6_{release}.op2", superelement=0)
-        assert residual.labels == reduced.labels
-        assert np.allclose(
-            residual.stiffness, reduced.stiffness, rtol=1e-6, atol=1e-9 * np.abs(reduced.stiffness).max()
-        )
+    residual = read(folder / "nas2cam_notall6_msc2017.op2", superelement=0)
+    assert residual.labels == reduced.labels
+    assert np.allclose(residual.stiffness, reduced.stiffness, rtol=1e-6, atol=1e-9 * np.abs(reduced.stiffness).max())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -31,8 +32,12 @@ def turned(element: SuperElement) -> SuperElement:
     return replace(element, stiffness=T.T @ element.stiffness @ T, mass=T.T @ element.mass @ T, motions=motions)
 
 
-def sent(element: SuperElement, path: Path, units: str = SI) -> SuperElement:
+def write(element: SuperElement, path: Path, units: str = SI) -> None:
     nastran.NastranReducer().write(element, path, Units.parse(units))
+
+
+def sent(element: SuperElement, path: Path, units: str = SI) -> SuperElement:
+    write(element, path, units)
     found = prs.read_part("nastran", path, units=units)
     assert isinstance(found, SuperElement)
     return found
@@ -84,8 +89,8 @@ def test_pyyeti_takes_the_files_too(tmp_path: Path) -> None:
     from pyyeti.nastran import asm2uset, op4, rddmig
 
     element = turned(plain_element())
-    sent(element, tmp_path / "part.op4")
-    sent(element, tmp_path / "punch.pch")
+    write(element, tmp_path / "part.op4")
+    write(element, tmp_path / "punch.pch")
     with (tmp_path / "part.asm").open() as file:
         uset = asm2uset(file)[0]
     assert [str(point) for point in uset.index.get_level_values("id")[:12:6]] == list(element.nodes)
@@ -109,7 +114,7 @@ def test_what_has_no_rows_in_nastran(tmp_path: Path) -> None:
         motions=element.motions @ phi,
     )
     with pytest.raises(prs.PartFileError, match="coordinate 1 moves 11, 23, expected one node"):
-        sent(body, tmp_path / "body.op4")
+        write(body, tmp_path / "body.op4")
     assert not list(tmp_path.iterdir())
 
 
@@ -127,8 +132,17 @@ def test_damage_that_no_format_shows(tmp_path: Path) -> None:
 
 
 def test_a_punch_does_not_replace_a_companion(tmp_path: Path) -> None:
-    sent(plain_element(), tmp_path / "part.op4")
+    write(plain_element(), tmp_path / "part.op4")
     with pytest.raises(prs.PartFileError, match=r"would replace the companion of part\.op4"):
-        sent(plain_element(), tmp_path / "part.pch")
+        write(plain_element(), tmp_path / "part.pch")
     with pytest.raises(prs.PartFileError, match="cannot be written"):
-        sent(plain_element(), tmp_path / "nowhere" / "part.op4")
+        write(plain_element(), tmp_path / "nowhere" / "part.op4")
+
+
+def test_without_pyyeti(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A punch needs no library; an OP4 says which one it does."""
+    monkeypatch.setitem(sys.modules, "pyyeti.nastran", None)
+    write(plain_element(), tmp_path / "part.pch")
+    with pytest.raises(prs.MissingExtraError, match=r"writing \.op4 needs the package 'pyyeti'.*prs-model\[nastran\]"):
+        write(plain_element(), tmp_path / "other.op4")
+    assert [path.name for path in tmp_path.iterdir()] == ["part.pch"]
