@@ -53,8 +53,9 @@ def _check_reducer(subject: Subject, place: Place, body: Body) -> None:
         return
     _check_source(subject, place, body, plugin.needs_source)
     _check_units(subject, place, body, plugin)
-    if plugin.gives == "reduced":
-        _check_not_reduced_again(subject, place, body, plugin.needs_source)
+    if plugin.gives == "reduced" and body.modes is not None:
+        message = f"found modes, expected none; what reducer '{body.reducer}' gives is reduced already: remove it"
+        subject.problems.add((*place, "modes"), message)
     try:
         options_in_si(body, subject.file.units)
     except ValidationError as error:
@@ -94,14 +95,6 @@ def _check_units(subject: Subject, place: Place, body: Body, plugin: plugins.Red
             Units.parse(body.units)
         except ValueError as error:
             subject.problems.add((*place, "units"), str(error))
-
-
-def _check_not_reduced_again(subject: Subject, place: Place, body: Body, has_file: bool) -> None:
-    """The retained nodes of a file may be tied to new ones; the modes are those that it has."""
-    for key in ("modes",) if has_file else ("modes", "coupling", "tie"):
-        if getattr(body, key) is not None:
-            message = f"found {key}, expected none; what reducer '{body.reducer}' gives is reduced already: remove it"
-            subject.problems.add((*place, key), message)
 
 
 def _check_ground(subject: Subject, place: Place, body: Body) -> None:

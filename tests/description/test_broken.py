@@ -185,8 +185,6 @@ PARTS = [
          "found units, expected none"),
     yaml("modes of a rigid body", "frame: bed\n    reducer", "frame: bed\n    modes: 5\n    reducer",
          "bodies.bed.modes", "found modes, expected none"),
-    yaml("tie of a rigid body", "frame: bed\n    reducer", "frame: bed\n    tie: joint\n    reducer",
-         "bodies.bed.tie", "found tie, expected none"),
     yaml("inertia of no body", "zz: 2.0e5", "zz: 9.0e5", "bodies.foot.options.inertia", "principal moments"),
     yaml("clamped but free", "  ram:\n    frame", "  ram:\n    clamped: [foot]\n    frame", "bodies.ram.clamped",
          "add 'grounded: true'"),
