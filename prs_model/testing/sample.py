@@ -55,6 +55,7 @@ class Sample:
 
     @property
     def plugin(self) -> plugins.Reducer[Any]:
+        """The reducer. Raises UnknownNameError or PluginError."""
         return plugins.reducer(self.reducer)
 
     def read(self) -> FiniteElementModel | SuperElement:

@@ -41,7 +41,7 @@ def variants(content: bytes, places: int) -> Iterator[Variant]:
     yield Variant("prose", lambda data, _: PROSE)
     yield Variant("garbage appended", lambda data, _: data + GARBAGE)
     for place in range(1, places + 1):
-        yield Variant(f"a bit flipped ({place})", flip_bit)
+        yield Variant(f"a bit flipped ({place})", _flip_bit)
     inner = LINES if text else BLOCKS
     for name, change in inner.items():
         count = 1 if name in ONCE else places
@@ -54,22 +54,22 @@ def _beginning(share: int, data: bytes, chance: random.Random) -> bytes:
     return data[: len(data) * share // 100]
 
 
-def flip_bit(data: bytes, chance: random.Random) -> bytes:
+def _flip_bit(data: bytes, chance: random.Random) -> bytes:
     at = chance.randrange(len(data))
     return data[:at] + bytes([data[at] ^ (1 << chance.randrange(8))]) + data[at + 1 :]
 
 
-def another_digit(data: bytes, chance: random.Random) -> bytes:
+def _another_digit(data: bytes, chance: random.Random) -> bytes:
     at = chance.choice([found.start() for found in LEADING_DIGIT.finditer(data)] or [0])
     digit = chance.choice([byte for byte in b"123456789" if byte != data[at]])
     return data[:at] + bytes([digit]) + data[at + 1 :]
 
 
-def end_missing(data: bytes, chance: random.Random) -> bytes:
+def _end_missing(data: bytes, chance: random.Random) -> bytes:
     return b"".join(_lines(data)[:-1])
 
 
-def lines_swapped(data: bytes, chance: random.Random) -> bytes:
+def _lines_swapped(data: bytes, chance: random.Random) -> bytes:
     lines = _lines(data)
     if len(lines) < 2:
         return data
@@ -78,7 +78,7 @@ def lines_swapped(data: bytes, chance: random.Random) -> bytes:
     return b"".join(lines)
 
 
-def neighbours_swapped(data: bytes, chance: random.Random) -> bytes:
+def _neighbours_swapped(data: bytes, chance: random.Random) -> bytes:
     lines = _lines(data)
     if len(lines) < 2:
         return data
@@ -87,41 +87,41 @@ def neighbours_swapped(data: bytes, chance: random.Random) -> bytes:
     return b"".join(lines)
 
 
-def line_doubled(data: bytes, chance: random.Random) -> bytes:
+def _line_doubled(data: bytes, chance: random.Random) -> bytes:
     lines = _lines(data)
     at = chance.randrange(len(lines))
     return b"".join([*lines[: at + 1], *lines[at:]])
 
 
-def line_missing(data: bytes, chance: random.Random) -> bytes:
+def _line_missing(data: bytes, chance: random.Random) -> bytes:
     lines = _lines(data)
     at = chance.randrange(len(lines))
     return b"".join(lines[:at] + lines[at + 1 :])
 
 
-def block_zero(data: bytes, chance: random.Random) -> bytes:
+def _block_zero(data: bytes, chance: random.Random) -> bytes:
     at = _block(data, chance)
     return data[:at] + bytes(len(data[at : at + BLOCK])) + data[at + BLOCK :]
 
 
-def blocks_swapped(data: bytes, chance: random.Random) -> bytes:
+def _blocks_swapped(data: bytes, chance: random.Random) -> bytes:
     a, b = sorted((_block(data, chance), _block(data, chance)))
     if b - a < BLOCK:
-        return block_missing(data, chance)
+        return _block_missing(data, chance)
     return data[:a] + data[b : b + BLOCK] + data[a + BLOCK : b] + data[a : a + BLOCK] + data[b + BLOCK :]
 
 
-def block_doubled(data: bytes, chance: random.Random) -> bytes:
+def _block_doubled(data: bytes, chance: random.Random) -> bytes:
     at = _block(data, chance)
     return data[: at + BLOCK] + data[at:]
 
 
-def block_missing(data: bytes, chance: random.Random) -> bytes:
+def _block_missing(data: bytes, chance: random.Random) -> bytes:
     at = _block(data, chance)
     return data[:at] + data[at + BLOCK :]
 
 
-def numbers_huge(data: bytes, chance: random.Random) -> bytes:
+def _numbers_huge(data: bytes, chance: random.Random) -> bytes:
     """Eight bytes of ones: a size beyond any memory, or a number that is none."""
     at = _block(data, chance)
     return data[:at] + b"\xff" * 8 + data[at + 8 :]
@@ -129,19 +129,19 @@ def numbers_huge(data: bytes, chance: random.Random) -> bytes:
 
 BLOCK = 64
 LINES: dict[str, Change] = {
-    "another digit": another_digit,
-    "lines swapped": lines_swapped,
-    "neighbour lines swapped": neighbours_swapped,
-    "a line twice": line_doubled,
-    "a line missing": line_missing,
-    "last line missing": end_missing,
+    "another digit": _another_digit,
+    "lines swapped": _lines_swapped,
+    "neighbour lines swapped": _neighbours_swapped,
+    "a line twice": _line_doubled,
+    "a line missing": _line_missing,
+    "last line missing": _end_missing,
 }
 BLOCKS: dict[str, Change] = {
-    "64 bytes zero": block_zero,
-    "64 bytes swapped": blocks_swapped,
-    "64 bytes twice": block_doubled,
-    "64 bytes missing": block_missing,
-    "8 bytes of ones": numbers_huge,
+    "64 bytes zero": _block_zero,
+    "64 bytes swapped": _blocks_swapped,
+    "64 bytes twice": _block_doubled,
+    "64 bytes missing": _block_missing,
+    "8 bytes of ones": _numbers_huge,
     "last 16 bytes missing": lambda data, _: data[:-16],
 }
 ONCE = ("last line missing", "last 16 bytes missing")
