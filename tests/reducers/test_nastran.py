@@ -12,10 +12,10 @@ from scipy.linalg import eigh
 
 import prs_model as prs
 from prs_model.reduction import SuperElement
+from prs_reducers import nastran
 from tests.superelements import DATA, needs_data, reference
 
 pytest.importorskip("pyyeti")
-nastran = pytest.importorskip("prs_reducers.nastran")
 
 AS_WRITTEN = "m-N-kg-s"  # passes numbers through
 EXPORTS = ("nastran_extseout/outboard", "nastran_extseout/inboard", "nastran_csuper/inboard")

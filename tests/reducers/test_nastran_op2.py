@@ -12,8 +12,7 @@ import pytest
 import prs_model as prs
 from prs_model.reduction import SuperElement
 from prs_model.testing.element import plain_element
-
-nastran = pytest.importorskip("prs_reducers.nastran")
+from prs_reducers import nastran
 
 UNITS = "m-N-kg-s"
 GRID, GRID_DOUBLE, CORD2R = (4501, 45, 1), (4501, 45, 1120001), (2101, 21, 8)

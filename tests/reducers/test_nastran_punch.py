@@ -10,10 +10,9 @@ import pytest
 import prs_model as prs
 from prs_model.description.units import Units
 from prs_model.reduction import SuperElement
+from prs_reducers import nastran
 from tests.meshes import STEEL, box, steel, write
 from tests.superelements import DATA, needs_data, reference
-
-nastran = pytest.importorskip("prs_reducers.nastran")
 
 UNITS = "m-N-kg-s"
 HEADER = "DMIG,{},0,6,2,0,,,{}\n"

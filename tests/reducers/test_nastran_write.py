@@ -14,10 +14,10 @@ import prs_model as prs
 from prs_model.description.units import Units
 from prs_model.reduction import SuperElement
 from prs_model.testing.element import plain_element
+from prs_reducers import nastran
 from tests.superelements import DATA, needs_data
 
 pytest.importorskip("pyyeti")
-nastran = pytest.importorskip("prs_reducers.nastran")
 
 SI, MM = "m-N-kg-s", "mm-N-tonne-s"
 
