@@ -42,7 +42,7 @@ def read_apart(function: str, *paths: Path, extra: tuple[str, str] | None = None
     with TemporaryDirectory(prefix="prs-model-") as folder:
         out = Path(folder) / "arrays.npz"
         said = _run(job, out, LEAST_SECONDS + SECONDS_PER_BYTE * size, paths[0])
-        if said.get("missing") is not None and extra is not None:
+        if said.get("missing") and extra is not None:
             raise MissingExtraError(*extra, purpose=f"reading {paths[0].name}")
         if "error" in said:
             raise PartFileError(paths[0], str(said["error"]))
@@ -97,8 +97,8 @@ def _answer(job: dict[str, Any], out: Path) -> dict[str, Any]:
         with contextlib.redirect_stdout(io.StringIO()):
             arrays = function(*map(Path, job["paths"]), **job["arguments"])
         np.savez(out, allow_pickle=False, **arrays)
-    except ImportError as error:
-        return {"error": f"{error}", "missing": error.name or str(error)}
+    except ModuleNotFoundError as error:
+        return {"error": f"{error}", "missing": True}
     except MemoryError:
         return {"error": "asks for far more memory than a file of its size can fill: damaged"}
     except ValueError as error:
