@@ -19,6 +19,7 @@ from .errors import (
 
 if TYPE_CHECKING:
     from .description import MachineDescription
+    from .description.schema import Section
     from .finite_elements import FiniteElementModel
     from .kinematics import Configuration, Kinematics
     from .kinematics.tasks import Task
@@ -39,6 +40,7 @@ _LAZY = {
     "Modes": "modes",
     "PartRequest": "plugins",
     "Reducer": "plugins",
+    "Section": "description.schema",
     "SuperElement": "reduction",
     "System": "synthesis",
     "Task": "kinematics.tasks",
@@ -66,6 +68,7 @@ __all__ = [
     "PluginError",
     "PrsError",
     "Reducer",
+    "Section",
     "SuperElement",
     "System",
     "Task",

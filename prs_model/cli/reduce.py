@@ -40,6 +40,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--grounded", action="store_true", help="the part is held to the ground in its file")
     parser.add_argument("--clamp", action="append", default=[], metavar="SET", help="hold a node set to the ground")
     parser.add_argument(
+        "--expect",
+        action="append",
+        type=assignment,
+        default=[],
+        metavar="NAME=VALUE",
+        help="what is known: mass=8.4 (kg), frequency=751 (Hz, the first), tolerance=0.05; else the part is refused",
+    )
+    parser.add_argument(
         "--set",
         dest="settings",
         action="append",
@@ -67,6 +75,7 @@ def run(options: argparse.Namespace) -> dict[str, Any]:
         coupling=options.coupling,
         grounded=options.grounded or bool(options.clamp),
         clamped=options.clamp,
+        expected=_nested(_once("--expect", options.expect), "--expect") or None,
         **_nested(_once("--set", options.settings)),
     )
     report = element.check()
@@ -142,7 +151,7 @@ def _once(option: str, assignments: list[tuple[str, str]]) -> dict[str, str]:
     return given
 
 
-def _nested(settings: dict[str, str]) -> dict[str, Any]:
+def _nested(settings: dict[str, str], option: str = "--set") -> dict[str, Any]:
     """``{"material.E": "2.1e11"}`` as ``{"material": {"E": 2.1e11}}``."""
     options: dict[str, Any] = {}
     for path, text in settings.items():
@@ -151,8 +160,8 @@ def _nested(settings: dict[str, str]) -> dict[str, Any]:
         for section in sections:
             entry = entry.setdefault(section, {})
             if not isinstance(entry, dict):
-                raise PrsError(f"--set {path}: '{section}' has a value already, expected a section")
+                raise PrsError(f"{option} {path}: '{section}' has a value already, expected a section")
         if last in entry:
-            raise PrsError(f"--set {path}: '{last}' has a value already, or entries below it")
+            raise PrsError(f"{option} {path}: '{last}' has a value already, or entries below it")
         entry[last] = parse_value(text)
     return options

@@ -16,7 +16,9 @@ from .quantity import (
     DampingRatio,
     Duration,
     Force,
+    Frequency,
     Length,
+    Mass,
     Number,
     PositiveLength,
     Rate,
@@ -155,6 +157,17 @@ class Interface(Selection):
     travel: Travel | None = None
 
 
+class Expected(Section):
+    """What is known of a part beforehand; one that differs by more than the tolerance is refused.
+
+    mass: of a free part. frequency [Hz]: the first of the reduced part, held nowhere but where its file holds it.
+    """
+
+    mass: Mass | None = None
+    frequency: Frequency | None = None
+    tolerance: DampingRatio | None = None  # relative; default 0.05
+
+
 class Body(Section):
     """One part: the URDF link that carries it, how it is read, and where it is held.
 
@@ -169,6 +182,7 @@ class Body(Section):
     interfaces: dict[str, Interface] = {}
     clamped: tuple[str, ...] = ()  # node sets of the part file held to the ground before reduction
     grounded: bool = False
+    expected: Expected | None = None
     modes: Annotated[int, Field(ge=0)] | None = None
     coupling: Coupling | None = None
     tie: Tie | None = None

@@ -19,6 +19,7 @@ from ..description.schema import Body, Coupling, Interface, NodeId, ReductionDef
 from ..description.units import SI, Units
 from ..errors import PartFileError, PrsError
 from ..finite_elements import FiniteElementModel
+from .expected import check_expected
 from .from_model import reduce_model
 from .model_gate import check_model
 from .recipe import Settings, recipe
@@ -55,15 +56,11 @@ def build_part(
     reducer, request = _asked(stem, body, folder)
     settings = Settings.of(body, defaults)
     if request.source is None:
-        return _read(reducer, request, body, settings)[0]
-    text, files = recipe(body, request.options, settings, reducer.version), tuple(reducer.files(request))
-    store = None if defaults.store is None else StoredPart(folder / defaults.store, stem, text, files)
-    element = _made.get(_key(stem, text, files, store))
-    if element is None:
-        element = _found_or_made(reducer, request, body, settings, text, files, store)
-        _made[_key(stem, text, files, store)] = element
-        if len(_made) > MOST_KEPT:
-            del _made[next(iter(_made))]
+        element: Element = _read(reducer, request, body, settings)[0]
+    else:
+        element = _from_file(reducer, request, body, settings, defaults, folder)
+    if body.expected is not None:
+        check_expected(element, body.expected)
     return _travelling_with(element, body)
 
 
@@ -78,14 +75,17 @@ def reduce(
     coupling: Coupling = "rigid",
     grounded: bool = False,
     clamped: Iterable[str] = (),
+    expected: Mapping[str, float] | None = None,
     **options: Any,
 ) -> SuperElement:
     """Read one part with any reducer plug-in and reduce it, outside of a machine.
 
     nodes: short for interfaces that are one node or several, such as ``{"tip": 3, "root": [11, 19]}`` (a reducer with
     an option of that name gets it instead); interfaces: as in machine.yaml, by name; units: of the part file, such as
-    ``mm-N-tonne-s``; modes: how many to keep of a part that is reduced here (default 3). Everything given here
-    (options, places of interfaces) is in SI. Raises UnknownNameError, DescriptionError, PartFileError, PhysicsError.
+    ``mm-N-tonne-s``; modes: how many to keep of a part that is reduced here (default 3); expected: `mass` [kg] and
+    `frequency` [Hz] that are known. Everything given here (options, places of interfaces) is in SI. The same call for
+    the same file gives the same element again, without reading it.
+    Raises UnknownNameError, DescriptionError, PartFileError, PhysicsError.
     """
     if nodes is not None and "nodes" in plugins.reducer(reducer).Options.model_fields:
         nodes, options = None, {**options, "nodes": nodes}
@@ -94,6 +94,7 @@ def reduce(
         "interfaces": {**_at_nodes(nodes or {}), **(interfaces or {})},
         "clamped": tuple(clamped),
         "grounded": grounded,
+        "expected": expected,
         "modes": modes,
         "coupling": coupling,
     }
@@ -201,6 +202,27 @@ def _stamp(path: Path) -> tuple[int, int] | None:
     except OSError:
         return None
     return status.st_mtime_ns, status.st_size
+
+
+def _from_file(
+    reducer: plugins.Reducer[Any],
+    request: plugins.PartRequest[Any],
+    body: Body,
+    settings: Settings,
+    defaults: ReductionDefaults,
+    folder: Path,
+) -> Element:
+    """The element of a part file, remembered for as long as its files, its recipe and the store stay as they are."""
+    stem, files = request.name, tuple(reducer.files(request))
+    text = recipe(body, request.options, settings, reducer.version)
+    store = None if defaults.store is None else StoredPart(folder / defaults.store, stem, text, files)
+    element = _made.get(_key(stem, text, files, store))
+    if element is None:
+        element = _found_or_made(reducer, request, body, settings, text, files, store)
+        _made[_key(stem, text, files, store)] = element
+        if len(_made) > MOST_KEPT:
+            del _made[next(iter(_made))]
+    return element
 
 
 def _found_or_made(

@@ -18,6 +18,7 @@ from .travelling import TravellingElement
 
 HEAVIEST = 2.3e4  # kg/m^3, osmium in the box around the nodes
 FASTEST = 2.0e4  # m/s: twice the length times the first free frequency; sound in diamond
+LONGEST = 30.0  # m
 FREE = 1e-4  # of the first elastic frequency
 
 logger = logging.getLogger("prs_model")
@@ -134,6 +135,6 @@ def _surprises(known: MassProperties | None, size: FloatArray, free: FloatArray,
         said.append(
             f"its first free frequency, {free[0]:.4g} Hz, is too high for a part {longest:.4g} m long; {advice}"
         )
-    if longest > 100.0 or 0.0 < longest < 1e-3:
+    if longest > LONGEST or 0.0 < longest < 1e-3:
         said.append(f"its nodes are {longest:.4g} m apart; {advice}")
     return said

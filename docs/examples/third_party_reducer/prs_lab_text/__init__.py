@@ -5,8 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from prs_model import PartFileError, PartRequest, Reducer, SuperElement
-from prs_model.description.schema import Section
+from prs_model import PartFileError, PartRequest, Reducer, Section, SuperElement
 from prs_model.part_files import MODE, LabelledMatrices, NodeTable, read_text, super_element
 
 SIX = np.arange(6)  # ux uy uz rx ry rz
