@@ -12,9 +12,9 @@ import numpy as np
 from prs_model.arrays import FloatArray, IntArray
 from prs_model.description.schema import Section
 from prs_model.finite_elements import FiniteElementModel
-from prs_reducers.mesh_file import TetrahedralMesh
+from prs_reducers.elements.tetrahedra import outer_faces
+from prs_reducers.meshes.mesh_file import TetrahedralMesh
 from prs_reducers.solid import SolidOptions, solid_model
-from prs_reducers.tetrahedra import outer_faces
 
 EDGES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))  # mid-side nodes 4..9 in VTK's order
 STEEL = {"E": 2.1e11, "nu": 0.3, "density": 7850.0}

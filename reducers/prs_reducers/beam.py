@@ -16,9 +16,9 @@ from prs_model.description.schema import Point, Section
 from prs_model.finite_elements import FiniteElementModel
 from prs_model.plugins import PartRequest, Reducer
 
-from .beam_element import at_nodes, beam_matrices
-from .beam_sections import BeamSection, CrossSection, may_taper, tapered
-from .named_points import Direction, PointMass, check_ends, check_known, check_one_piece, local_axes, refuse
+from .elements.beam_element import at_nodes, beam_matrices
+from .elements.beam_sections import BeamSection, CrossSection, may_taper, tapered
+from .elements.named_points import Direction, PointMass, check_ends, check_known, check_one_piece, local_axes, refuse
 
 
 class BeamMember(Section):

@@ -16,11 +16,11 @@ from prs_model.finite_elements import FiniteElementModel
 from prs_model.part_files import LabelledMatrices, read_text
 from prs_model.plugins import PartRequest, Reducer
 
-from .labelled_mesh import LabelledMesh
-from .mesh_agreement import missing_rows, sentence_of
-from .meshed_part import meshed_model
-from .number_table import read_table, whole_numbers
-from .part_mesh import mesh_files, read_part_mesh
+from .meshes.labelled_mesh import LabelledMesh
+from .meshes.mesh_agreement import missing_rows, sentence_of
+from .meshes.meshed_part import meshed_model
+from .meshes.part_mesh import mesh_files, read_part_mesh
+from .tables.number_table import read_table, whole_numbers
 
 SUBSTRUCTURE = (
     "output of *SUBSTRUCTURE GENERATE: CalculiX (2.20 at least) writes the stiffness of the retained nodes with all "

@@ -15,8 +15,8 @@ from prs_model.plugins import PartRequest, Reducer
 from prs_model.reduction import SuperElement
 from prs_model.reduction.super_element import node_labels, rigid_body_modes
 
-from .named_points import PointMass, check_ends, check_known, check_one_piece, refuse
-from .springs import GROUND, Spring
+from .elements.named_points import PointMass, check_ends, check_known, check_one_piece, refuse
+from .elements.springs import GROUND, Spring
 
 logger = logging.getLogger("prs_model")
 

@@ -20,8 +20,8 @@ from prs_model.plugins import PartRequest, Reducer
 from prs_model.reduction import SuperElement
 from prs_model.reduction.storage import whole
 
-from .dof_table import DofTable, digest, read_dof_table, write_dof_table
-from .mtx import parse_mtx, write_mtx
+from .tables.dof_table import DofTable, digest, read_dof_table, write_dof_table
+from .tables.mtx import parse_mtx, write_mtx
 
 
 class MatrixMarketOptions(Section):

@@ -20,9 +20,9 @@ from prs_model.errors import PartFileError
 from prs_model.finite_elements import FiniteElementModel
 from prs_model.plugins import PartRequest, Reducer
 
-from .mesh_file import TetrahedralMesh, read_mesh
-from .mid_sides import check_mid_sides
-from .tetrahedra import Material, assemble, face_areas, outer_faces
+from .elements.tetrahedra import Material, assemble, face_areas, outer_faces
+from .meshes.mesh_file import TetrahedralMesh, read_mesh
+from .meshes.mid_sides import check_mid_sides
 
 logger = logging.getLogger("prs_model")
 

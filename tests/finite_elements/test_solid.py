@@ -16,9 +16,9 @@ from prs_model.description.units import Units
 from prs_model.finite_elements import FiniteElementModel
 from prs_model.reduction.coupling import Tie
 from prs_model.reduction.craig_bampton import craig_bampton
-from prs_reducers.mesh_file import read_mesh
+from prs_reducers.elements.tetrahedra import Material, assemble
+from prs_reducers.meshes.mesh_file import read_mesh
 from prs_reducers.solid import SolidOptions, solid_model
-from prs_reducers.tetrahedra import Material, assemble
 from tests.meshes import STEEL, box, steel, write
 
 BEAM = (1.0, 0.05, 0.05)

@@ -8,7 +8,7 @@ import numpy as np
 
 from prs_model.arrays import FloatArray, IntArray
 from prs_model.finite_elements import FiniteElementModel
-from prs_reducers.mesh_file import TetrahedralMesh
+from prs_reducers.meshes.mesh_file import TetrahedralMesh
 
 
 def write_deck(path: Path, mesh: TetrahedralMesh, labels: IntArray, *, scale: float = 1.0, more: str = "") -> Path:

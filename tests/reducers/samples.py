@@ -16,7 +16,7 @@ from prs_model.description.units import Units
 from prs_model.testing import Sample
 from prs_model.testing.element import plain_element
 from prs_reducers.ansys import load_full
-from prs_reducers.mesh_file import TetrahedralMesh
+from prs_reducers.meshes.mesh_file import TetrahedralMesh
 from tests.meshes import STEEL, box, steel, write
 from tests.reducers import test_ansys, test_nastran_op2, test_samcef
 from tests.superelements import DATA, reference

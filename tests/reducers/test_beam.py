@@ -13,7 +13,7 @@ import prs_model as prs
 from prs_model.description.units import Units
 from prs_model.finite_elements import FiniteElementModel
 from prs_reducers.beam import BeamOptions, beam_model
-from prs_reducers.beam_element import plane_bending
+from prs_reducers.elements.beam_element import plane_bending
 
 E, NU, DENSITY = 2.1e11, 0.3, 7850.0
 G = E / 2.6

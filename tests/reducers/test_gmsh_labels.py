@@ -9,7 +9,7 @@ import pytest
 
 import prs_model as prs
 from prs_model.finite_elements import FiniteElementModel
-from prs_reducers.gmsh_labels import node_labels
+from prs_reducers.meshes.gmsh_labels import node_labels
 from tests.meshes import STEEL, box, write
 from tests.reducers.decks import write_deck
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import prs_model as prs
-from prs_reducers.deck_mesh import read_deck_mesh
-from prs_reducers.labelled_mesh import LabelledMesh
-from prs_reducers.part_mesh import mesh_files
-from prs_reducers.solid_faces import EDGES, outer_surface
+from prs_reducers.meshes.deck_mesh import read_deck_mesh
+from prs_reducers.meshes.labelled_mesh import LabelledMesh
+from prs_reducers.meshes.part_mesh import mesh_files
+from prs_reducers.meshes.solid_faces import EDGES, outer_surface
 
 TETRAHEDRON = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
 WEDGE = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [0, 1, 1]]

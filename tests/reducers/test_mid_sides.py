@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import prs_model as prs
-from prs_reducers.mid_sides import check_mid_sides
+from prs_reducers.meshes.mid_sides import check_mid_sides
 from tests.meshes import box, steel
 
 

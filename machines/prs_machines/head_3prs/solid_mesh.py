@@ -14,7 +14,7 @@ from scipy.spatial import cKDTree
 
 from prs_model.arrays import BoolArray, FloatArray, IntArray
 from prs_model.errors import PrsError
-from prs_reducers.tetrahedra import outer_faces
+from prs_reducers.elements.tetrahedra import outer_faces
 
 Where = Callable[[FloatArray], BoolArray]
 

@@ -13,8 +13,8 @@ from prs_model.part_files import read_text
 from prs_model.plugins import PartRequest, Reducer
 from prs_model.reduction import SuperElement
 
-from ..meshed_part import meshed_model
-from ..part_mesh import mesh_files, read_part_mesh
+from ..meshes.meshed_part import meshed_model
+from ..meshes.part_mesh import mesh_files, read_part_mesh
 from .matrix_output import read_matrices
 from .substructure import is_substructure, read_substructure
 

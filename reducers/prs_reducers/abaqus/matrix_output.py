@@ -12,8 +12,8 @@ from prs_model.arrays import FloatArray, IntArray
 from prs_model.errors import PartFileError, short
 from prs_model.part_files import LabelledMatrices, read_text
 
-from ..labelled_mesh import LabelledMesh
-from ..number_table import read_table, whole_numbers
+from ..meshes.labelled_mesh import LabelledMesh
+from ..tables.number_table import read_table, whole_numbers
 
 HELD = 1e35
 """Abaqus holds a motion by 1e36 on the diagonal of the stiffness."""

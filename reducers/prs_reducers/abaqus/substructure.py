@@ -16,7 +16,7 @@ from prs_model.part_files.text import number
 from prs_model.reduction import SuperElement
 
 from ..calculix import SUBSTRUCTURE
-from ..labelled_mesh import LabelledMesh
+from ..meshes.labelled_mesh import LabelledMesh
 
 FREE = 1e-6
 HEAD = re.compile(r"^\*USER ELEMENT\b[^\n]*?NODES\s*=\s*(\d+)([^\n]*)$", re.IGNORECASE | re.MULTILINE)

@@ -16,7 +16,7 @@ from prs_model.finite_elements import FiniteElementModel
 from prs_model.part_files import LabelledMatrices, NodeTable, full_model, read_text
 from prs_model.plugins import PartRequest, Reducer
 
-from ..mtx import is_mtx, parse_mtx
+from ..tables.mtx import is_mtx, parse_mtx
 from .full_file import is_full, load_full, read_full
 from .harwell_boeing import parse_harwell_boeing
 from .node_list import read_nodes

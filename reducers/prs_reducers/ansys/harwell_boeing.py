@@ -15,7 +15,7 @@ from prs_model.arrays import FloatArray, IntArray
 from prs_model.errors import PartFileError, short
 from prs_model.part_files.text import number
 
-from ..mtx import check_end
+from ..tables.mtx import check_end
 
 _FORMAT = re.compile(r"\(\s*(?:\d+P\s*,?\s*)?(\d*)\s*([IEDFG])\s*(\d+)[^()]*\)", re.IGNORECASE)
 

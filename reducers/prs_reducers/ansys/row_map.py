@@ -10,7 +10,7 @@ from prs_model.arrays import IntArray
 from prs_model.errors import PartFileError, short
 from prs_model.part_files import read_text
 
-from ..mtx import check_end, is_mtx
+from ..tables.mtx import check_end, is_mtx
 
 DOFS = {"UX": 0, "UY": 1, "UZ": 2, "ROTX": 3, "ROTY": 4, "ROTZ": 5}
 

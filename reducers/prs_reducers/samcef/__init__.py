@@ -16,8 +16,8 @@ from prs_model.part_files import LabelledMatrices, NodeTable, read_text, super_e
 from prs_model.plugins import PartRequest, Reducer
 from prs_model.reduction import SuperElement
 
-from ..dof_table import DofTable, read_dof_table
-from ..mtx import is_mtx, parse_mtx
+from ..tables.dof_table import DofTable, read_dof_table
+from ..tables.mtx import is_mtx, parse_mtx
 from .bacon import Deck, read_deck
 from .dense import read_dense
 

@@ -11,7 +11,7 @@ from prs_model.arrays import FloatArray
 from prs_model.errors import PartFileError, short
 from prs_model.part_files.text import number
 
-from ..mtx import check_end
+from ..tables.mtx import check_end
 
 COMMENTS = ("#", "!", "%", "*", "$")
 STIFFNESS, MASS = ("STIFF", "RIGID", "RAIDEUR"), ("MASS",)

@@ -18,7 +18,7 @@ from prs_model.description.schema import Point, Section
 from prs_model.finite_elements.mass import MassProperties
 from prs_model.finite_elements.rigid_motion import transfer
 
-from .rigid import InertiaTensor
+from ..rigid import InertiaTensor
 
 Direction = tuple[Number, Number, Number]
 PARALLEL = 1e-3  # sine of the smallest angle between two directions that span a plane

@@ -12,7 +12,7 @@ from pydantic_core import PydanticCustomError
 from prs_model.description.quantity import Area, AreaMoment, PositiveLength, PositiveNumber, Pressure
 from prs_model.description.schema import Section
 
-from .solid import MaterialOptions
+from ..solid import MaterialOptions
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,1 @@
+"""Elements that are assembled here: tetrahedra, beams, springs, point masses."""

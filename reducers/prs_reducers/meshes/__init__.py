@@ -1,0 +1,1 @@
+"""Meshes and decks that stand beside matrices, or are parts by themselves: nodes with labels, sets, surfaces."""

@@ -1,0 +1,1 @@
+"""Numbers in text files: matrices, tables, what rows are."""
