@@ -36,11 +36,11 @@ def save(element: SuperElement | TravellingElement, path: str | Path) -> None:
         arrays["stations"] = element.stations
         if element.products is not None:
             arrays["products"] = element.products
-    text = np.array(json.dumps(header, sort_keys=True))
+    contents: dict[str, Any] = {"header": np.array(json.dumps(header, sort_keys=True)), **arrays}
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with whole(path) as file:
-            np.savez_compressed(file, allow_pickle=False, header=text, **arrays)
+            np.savez_compressed(file, **contents)
     except OSError as error:
         raise PartFileError(path, f"cannot be written: {error.strerror or error}") from error
 

@@ -24,7 +24,6 @@ from ..arrays import FloatArray
 from ..errors import PrsError
 from ..reduction import SuperElement
 from .pipes import ending, read_all
-from .readers import run_forked, run_here, use
 from .receptance import difference, first_eigenvalue, receptances
 from .sample import Sample
 
@@ -59,10 +58,8 @@ def main() -> None:
     answers = os.dup(1)
     os.dup2(2, 1)  # whatever a reader prints is no answer
     jobs: Jobs = task["jobs"]
-    use(run_here)
     with _warnings() as warned:
         whole = _Whole(Sample(**jobs[0]).reduce())
-    use(run_forked)
     for job in jobs[1:]:
         answer = _forked(job, whole, set(warned), task["seconds"], task["memory"])
         os.write(answers, (json.dumps(answer) + "\n").encode())

@@ -8,18 +8,11 @@ from pathlib import Path
 import pytest
 
 import prs_model as prs
-from prs_model.part_files import child_process
-from prs_model.testing import Sample, conformance, readers
+from prs_model.testing import Sample, conformance
 from tests.reducers.samples import OWN, WITHOUT_FILE, ansys_full, subdyn
 from tests.superelements import needs_data
 
 Make = Callable[[Path], Sample]
-
-
-@pytest.fixture(autouse=True)
-def _readers_run_here(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Each child process would load its reader's libraries anew; in those that read damaged files it stays so."""
-    monkeypatch.setattr(child_process, "_run", readers.run_here)
 
 
 def keeps_every_promise(make: Make, folder: Path) -> None:

@@ -27,7 +27,7 @@ def load_full(path: str | Path) -> LabelledMatrices:
 
 def read_full(path: Path) -> tuple[LabelledMatrices, IntArray]:
     """As `load_full`, and the nodes that have constrained DOFs."""
-    found = read_apart(f"{__name__}:read_arrays", path, extra=EXTRA)
+    found = read_apart(f"{__name__}:read_arrays", path, extra=EXTRA, needs="ansys.mapdl.reader")
     n = len(found["nodes"])
     matrices = LabelledMatrices(
         source=path,

@@ -15,7 +15,7 @@ from prs_model.part_files import LabelledMatrices, NodeTable, full_model, read_a
 from prs_model.plugins import PartRequest, Reducer
 from prs_model.reduction import SuperElement
 
-from .apart import EXTRA, LIST_OP4
+from .apart import EXTRA, LIST_OP4, NEEDS
 from .extdb import external, is_external, read_extdb
 from .matop4 import read_matop4
 from .nas2cam import Superelement, read_nas2cam, superelements
@@ -101,7 +101,7 @@ def matrices(path: Path | str) -> dict[str, tuple[int, int]]:
     """
     path = Path(path)
     if _suffix(path) == OP4:
-        sizes = read_apart(LIST_OP4, path, extra=EXTRA)
+        sizes = read_apart(LIST_OP4, path, extra=EXTRA, needs=NEEDS)
         return {name: (int(size[0]), int(size[1])) for name, size in sizes.items()}
     found = external(path).matrices if _suffix(path) == OP2 else punch_matrices(path)
     return {name: matrix.shape for name, matrix in found.items()}

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from .fortran import Tokens, check_op4, op2_blocks
 
-EXTRA = ("pyyeti", "nastran")
+EXTRA, NEEDS = ("pyyeti", "nastran"), "pyyeti.nastran"
 READ_OP4, LIST_OP4, READ_NAS2CAM = (f"{__name__}:{name}" for name in ("read_op4", "list_op4", "read_nas2cam"))
 
 Arrays = dict[str, NDArray[Any]]

@@ -13,7 +13,7 @@ from prs_model.arrays import FloatArray
 from prs_model.errors import PartFileError
 from prs_model.part_files import MODE, LabelledMatrices, NodeTable, read_apart
 
-from .apart import EXTRA, READ_OP4
+from .apart import EXTRA, NEEDS, READ_OP4
 from .cards import BLANK, Card, names_of_points, read_cards
 from .dmig import Dof
 from .geometry import Grid, System, grids_of, node_table, systems_of
@@ -47,7 +47,7 @@ def read_matop4(
     for each in said[1:]:
         _check_agree(said[0], each)
     first = said[0]
-    arrays = read_apart(READ_OP4, path, extra=EXTRA, stiffness=stiffness, mass=mass)
+    arrays = read_apart(READ_OP4, path, extra=EXTRA, needs=NEEDS, stiffness=stiffness, mass=mass)
     for kind, name in (("stiffness", stiffness), ("mass", mass)):
         _check_size(path, name.upper(), arrays[kind], first)
     matrices = LabelledMatrices(

@@ -13,7 +13,7 @@ from prs_model.errors import PartFileError
 from prs_model.part_files import MODE, LabelledMatrices, NodeTable, read_apart
 from prs_model.part_files.child_process import Arrays
 
-from .apart import EXTRA, READ_NAS2CAM
+from .apart import EXTRA, NEEDS, READ_NAS2CAM
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +73,7 @@ def read_nas2cam(op2: Path, op4: Path, wanted: int | None) -> tuple[LabelledMatr
 
 
 def _arrays(op2: Path, op4: Path) -> Arrays:
-    return read_apart(READ_NAS2CAM, op2, op4, extra=EXTRA)
+    return read_apart(READ_NAS2CAM, op2, op4, extra=EXTRA, needs=NEEDS)
 
 
 def _choice(path: Path, known: list[int], wanted: int | None) -> int:
