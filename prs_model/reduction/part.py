@@ -76,17 +76,20 @@ def reduce(
     grounded: bool = False,
     clamped: Iterable[str] = (),
     expected: Mapping[str, float] | None = None,
-    **options: Any,
+    options: Mapping[str, Any] | None = None,
+    **more: Any,
 ) -> SuperElement:
     """Read one part with any reducer plug-in and reduce it, outside of a machine.
 
     nodes: short for interfaces that are one node or several, such as ``{"tip": 3, "root": [11, 19]}`` (a reducer with
     an option of that name gets it instead); interfaces: as in machine.yaml, by name; units: of the part file, such as
     ``mm-N-tonne-s``; modes: how many to keep of a part that is reduced here (default 3); expected: `mass` [kg] and
-    `frequency` [Hz] that are known. Everything given here (options, places of interfaces) is in SI. The same call for
+    `frequency` [Hz] that are known; options: of the reducer, as a mapping or by name (`**more`). Everything given here
+    (options, places of interfaces) is in SI. The same call for
     the same file gives the same element again, without reading it.
     Raises UnknownNameError, DescriptionError, PartFileError, PhysicsError.
     """
+    options = _options(reducer, options, more)
     if nodes is not None and "nodes" in plugins.reducer(reducer).Options.model_fields:
         nodes, options = None, {**options, "nodes": nodes}
     entries = {
@@ -107,15 +110,28 @@ def reduce(
 
 
 def read_part(
-    reducer: str, source: str | Path | None = None, *, units: str | None = None, **options: Any
+    reducer: str,
+    source: str | Path | None = None,
+    *,
+    units: str | None = None,
+    options: Mapping[str, Any] | None = None,
+    **more: Any,
 ) -> FiniteElementModel | SuperElement:
     """What a reducer reads of a part, in SI, before interfaces, reduction and the physics gate.
 
-    units: of the part file. Options are in SI. Raises UnknownNameError, DescriptionError, PartFileError.
+    units: of the part file; options: of the reducer, in SI, as a mapping or by name (`**more`).
+    Raises UnknownNameError, DescriptionError, PartFileError.
     """
+    options = _options(reducer, options, more)
     body = validated(Body, _entries(reducer, source, units, options), f"read_part('{reducer}', ...)", (), SI)
     plugin, request = _asked(body.frame, body, Path())
     return plugin.read(request)
+
+
+def _options(reducer: str, options: Mapping[str, Any] | None, more: Mapping[str, Any]) -> dict[str, Any]:
+    if twice := (options or {}).keys() & more.keys():
+        raise PrsError(f"reducer '{reducer}': option '{min(twice)}' is given twice, by name and in 'options'")
+    return {**(options or {}), **more}
 
 
 def _entries(reducer: str, source: str | Path | None, units: str | None, options: Mapping[str, Any]) -> dict[str, Any]:
