@@ -28,8 +28,16 @@ def line_of(place: Place, lines: Mapping[Place, int | None]) -> int | None:
 
 
 def closest(name: object, known: Iterable[str]) -> str | None:
-    """The known name that is spelt most like `name`, if one is close."""
-    return next(iter(get_close_matches(str(name), list(known), n=1)), None)
+    """The shortest known name that begins with `name`, else the one spelt most like it, if one is close.
+
+    Neither case counts, nor an instance's name before a dot.
+    """
+    spelt = {each.casefold(): each for each in reversed(list(known))}
+    for word in (str(name).casefold(), str(name).casefold().rpartition(".")[2]):
+        longer = sorted((each for each in spelt if each.startswith(word)), key=len) if len(word) > 2 else []
+        for match in (*longer, *get_close_matches(word, spelt, n=1)):
+            return spelt[match]
+    return None
 
 
 def did_you_mean(name: object, known: Iterable[str]) -> str:
