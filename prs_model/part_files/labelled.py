@@ -20,6 +20,9 @@ from ..reduction.super_element import AXES, SuperElement
 MODE = -1
 """The component of a modal coordinate."""
 
+UNIT_AXES = 1e-6
+"""How far axes of unit length may be from it, and from right angles."""
+
 ENERGY, INERTIA = Dimension(force=1, length=1), Dimension(mass=1, length=2)
 LENGTH, MASS = Dimension(length=1), Dimension(mass=1)
 
@@ -50,7 +53,8 @@ class LabelledMatrices:
                 raise PartFileError(self.source, f"{name} holds numbers that are not finite: the file is damaged")
         if n == 0:
             raise PartFileError(self.source, "the matrices have no rows")
-        if len(self.components) != n or not np.all((self.components >= MODE) & (self.components < 6)):
+        whole = np.asarray(self.components).dtype.kind in "iu"
+        if len(self.components) != n or not whole or not np.all((self.components >= MODE) & (self.components < 6)):
             raise PartFileError(self.source, "a row's component is none of ux..rz (0..5) or a mode")
         seen: set[tuple[str, int]] = set()
         for node, component in zip(self.nodes.tolist(), self.components.tolist(), strict=True):
@@ -69,7 +73,8 @@ class NodeTable:
     """Where nodes are, in the units of their file.
 
     labels: (k,) numbers or names. coordinates: (k, 3). frames: (k, 3, 3) whose columns are the axes of each node's
-    output frame in body axes; None where all of them are the body's.
+    output frame in body axes; None where all of them are the body's. Raises PartFileError when shapes disagree, a node
+    stands there twice, a coordinate is not finite, or axes are not right-handed, of unit length and at right angles.
     """
 
     source: Path
@@ -83,6 +88,20 @@ class NodeTable:
         labels, counts = np.unique(self.labels.astype(str), return_counts=True)
         if np.any(counts > 1):
             raise PartFileError(self.source, f"node {labels[np.argmax(counts)]} stands there twice")
+        if self.frames is not None:
+            self._check_frames(self.frames)
+
+    def _check_frames(self, frames: FloatArray) -> None:
+        if frames.shape != (len(self.labels), 3, 3):
+            raise PartFileError(self.source, f"frames are {frames.shape}, expected ({len(self.labels)}, 3, 3)")
+        away = np.abs(frames.transpose(0, 2, 1) @ frames - np.eye(3)).max(axis=(1, 2), initial=0.0)
+        third = np.cross(frames[:, :, 0], frames[:, :, 1])
+        wrong = ~(away <= UNIT_AXES) | (np.sum(third * frames[:, :, 2], axis=1) < 0.0)
+        if np.any(wrong):
+            node = self.labels[np.argmax(wrong)]
+            raise PartFileError(
+                self.source, f"the axes of node {node} are not right-handed, of unit length and at right angles"
+            )
 
     def places(self, labels: NDArray[Any], asked_by: Path) -> IntArray:
         """(m,) where these nodes stand in the table. Raises PartFileError naming those that do not."""
@@ -173,6 +192,15 @@ def super_element(
         node_sets=node_sets or {},
         provenance=said,
     )
+
+
+def in_file_units(
+    stiffness: FloatArray, mass: FloatArray, components: IntArray, units: Units
+) -> tuple[FloatArray, FloatArray]:
+    """Matrices (n, n) of SI in `units`; modal coordinates stay mass-normalised. What `super_element` does, undone."""
+    scales = si_scales(components, units)
+    square = np.outer(scales, scales)
+    return stiffness * (square / ENERGY.factor(units)), mass * (square / INERTIA.factor(units))
 
 
 def si_scales(components: IntArray, units: Units) -> FloatArray:

@@ -15,7 +15,8 @@ from prs_model.description.units import Units
 from prs_model.errors import PartFileError
 from prs_model.finite_elements import FiniteElementModel
 from prs_model.part_files import MODE, LabelledMatrices, full_model, read_text, super_element
-from prs_model.part_files.labelled import ENERGY, INERTIA, LENGTH, si_scales
+from prs_model.part_files.labelled import LENGTH, in_file_units
+from prs_model.part_files.text import file_access
 from prs_model.plugins import PartRequest, Reducer
 from prs_model.reduction import SuperElement
 from prs_model.reduction.storage import whole
@@ -86,7 +87,7 @@ class MatrixMarketReducer(Reducer[MatrixMarketOptions]):
         PartFileError for an element whose coordinates are not the motions of nodes along the body's axes and modes.
         """
         nodes, components = coordinates_of(element, path)
-        stiffness, mass = in_file_units(element, np.array(components), units)
+        stiffness, mass = in_file_units(element.stiffness, element.mass, np.array(components), units)
         system = f"{units.length}-{units.force}-{units.mass}-s"
         texts = {
             "stiffness": _mtx_text(stiffness, f"stiffness of {element.name}, {system}"),
@@ -100,12 +101,9 @@ class MatrixMarketReducer(Reducer[MatrixMarketOptions]):
         held = ("held to the ground: say 'grounded: true'",) if element.grounded else ()
         rows = write_dof_table(table, system, positions, (f"rows of {element.name}", *held))
         beside = companions(path)
-        try:
-            for file, text in zip((*beside, path), (texts["mass"], rows, texts["stiffness"]), strict=True):
-                with whole(file) as opened:
-                    opened.write(text.encode())
-        except OSError as error:
-            raise PartFileError(path, f"cannot be written: {error.strerror or error}") from error
+        for file, text in zip((*beside, path), (texts["mass"], rows, texts["stiffness"]), strict=True):
+            with file_access(file, "written"), whole(file) as opened:
+                opened.write(text.encode())
 
 
 def companions(path: Path) -> tuple[Path, Path]:
@@ -136,13 +134,6 @@ def coordinates_of(element: SuperElement, path: Path) -> tuple[list[str], list[i
     if lost:
         raise PartFileError(path, f"cannot hold {element.name}: node '{lost[0]}' has no coordinate; store it as .npz")
     return nodes, components
-
-
-def in_file_units(element: SuperElement, components: np.ndarray, units: Units) -> tuple[FloatArray, FloatArray]:
-    """Stiffness and mass in `units`; modal coordinates stay mass-normalised."""
-    scales = si_scales(components, units)
-    square = np.outer(scales, scales)
-    return element.stiffness * square / ENERGY.factor(units), element.mass * square / INERTIA.factor(units)
 
 
 def _read(path: Path, name: str, table: DofTable) -> csr_array:

@@ -12,6 +12,7 @@ from scipy.sparse import coo_array, csr_array
 from prs_model.arrays import IntArray
 from prs_model.errors import PartFileError
 from prs_model.part_files import LabelledMatrices, read_apart
+from prs_model.part_files.text import file_access
 
 EXTRA = ("ansys-mapdl-reader", "ansys")
 
@@ -110,13 +111,8 @@ def _both_triangles(found: dict[str, NDArray[Any]], name: str, n: int) -> csr_ar
 
 def is_full(path: Path) -> bool:
     """Whether a file is binary, as .full is. Raises PartFileError when it cannot be read."""
-    try:
-        with path.open("rb") as file:
-            head = file.read(400)
-    except FileNotFoundError as error:
-        raise PartFileError(path, "there is no such file") from error
-    except OSError as error:
-        raise PartFileError(path, f"cannot be read: {error.strerror or error}") from error
+    with file_access(path, "read"), path.open("rb") as file:
+        head = file.read(400)
     if not head:
         raise PartFileError(path, "is empty")
     return b"\0" in head

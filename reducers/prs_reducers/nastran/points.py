@@ -13,7 +13,7 @@ from prs_model.arrays import FloatArray, IntArray
 from prs_model.description.units import Units
 from prs_model.errors import PartFileError
 from prs_model.part_files import MODE
-from prs_model.part_files.labelled import ENERGY, INERTIA, LENGTH, si_scales
+from prs_model.part_files.labelled import LENGTH, in_file_units
 from prs_model.reduction import SuperElement
 from prs_model.reduction.super_element import AXES
 
@@ -52,16 +52,16 @@ def points_of(element: SuperElement, path: Path, units: Units) -> Points:
     order += list(range(physical, element.size))
     grids, modes, names = _numbers(element, physical)
     points = [grid for grid, own in zip(grids, columns, strict=True) for _ in own]
-    scales = si_scales(components[order], units)
-    each = np.outer(scales, scales)
+    square = np.ix_(order, order)
+    stiffness, mass = in_file_units(element.stiffness[square], element.mass[square], components[order], units)
     return Points(
         grids=tuple(grids),
         coordinates=element.positions / LENGTH.factor(units),
         frames=frames,
         points=(*points, *modes),
         components=components[order],
-        stiffness=element.stiffness[np.ix_(order, order)] * (each / ENERGY.factor(units)),
-        mass=element.mass[np.ix_(order, order)] * (each / INERTIA.factor(units)),
+        stiffness=stiffness,
+        mass=mass,
         names=names,
     )
 
