@@ -1,7 +1,7 @@
 """Newton's method on one pose, with the closures as Pinocchio's anchor constraints.
 
 It solves single poses; `newton` solves many at once on our own arrays. Neither uses the other's frames or closure
-rows, so that each is a check of the other.
+rows, so that each is a check of the other (but for a structure without joints, where nothing is solved).
 """
 
 from __future__ import annotations
@@ -24,7 +24,8 @@ def pinocchio_newton(
 ) -> tuple[FloatArray, bool]:
     """Joint values (n,) from `start` (n,) for one target (t,), and whether they solve the equations."""
     if model.nv == 0:  # nothing to solve, and Pinocchio 4.1 crashes on the Jacobian of such a model
-        return start.copy(), True
+        residual = equations.residual(equations.tree.forward(start[None]), target[None])
+        return start.copy(), bool(np.max(np.abs(residual), initial=0.0) <= TOLERANCE)
     data, q = model.createData(), start.copy()
     anchors = [(loop.rows, *_anchor(model, equations, loop)) for loop in equations.loops]
     for _ in range(_ITERATIONS):

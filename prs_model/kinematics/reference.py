@@ -42,7 +42,7 @@ def reference_configuration(description: MachineDescription, equations: Equation
 
 def _corrected(equations: Equations, q: FloatArray, target: FloatArray) -> FloatArray:
     """Gauss-Newton from the stored values, along the directions that the equations determine."""
-    for _ in range(_ITERATIONS):
+    for _ in range(_ITERATIONS if len(q) else 0):
         frames = equations.tree.forward(q[None])
         residual = equations.residual(frames, target)[0]
         if np.max(np.abs(residual), initial=0.0) <= TOLERANCE:
@@ -69,6 +69,11 @@ def _not_closed(equations: Equations, stored: FloatArray, q: FloatArray, target:
             f"found a fit to {gap:.2g} m or rad at best ({_gaps(equations, q, target)}), expected {TOLERANCE:g}; write "
             "the URDF's origins and axes with all digits, or close a redundant loop by 'point'"
         )
+    if not len(q):
+        return ("closures",), (
+            f"found links that do not meet, and no joint that moves ({_gaps(equations, q, target)}), expected links "
+            "that coincide; correct the closures or the URDF's origins"
+        )
     return _HERE, (
         f"found joint values near which nothing closes the loops in the reference pose (as stored: "
         f"{_gaps(equations, stored, target)}), expected the joint values of that pose; correct them, the pose, the "
@@ -81,7 +86,9 @@ def _gaps(equations: Equations, q: FloatArray, target: FloatArray) -> str:
     ends = np.cumsum([loop.rows for loop in equations.loops], dtype=int)
     rows = np.split(np.abs(equations.residual(equations.tree.forward(q[None]), target)[0]), ends)
     gaps = [f"{loop.name} open by {row.max():.3g}" for loop, row in zip(equations.loops, rows, strict=False)]
-    return ", ".join([*gaps, f"the pose missed by {rows[-1].max(initial=0.0):.3g}"]) + " m or rad"
+    if equations.task.coordinates:
+        gaps.append(f"the pose missed by {rows[-1].max():.3g}")
+    return ", ".join(gaps) + " m or rad"
 
 
 def _too_far(reach: Reach, stored: FloatArray, q: FloatArray) -> _Problem | None:

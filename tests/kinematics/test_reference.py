@@ -68,6 +68,27 @@ def test_a_pose_that_cannot_be_met_is_not_blamed_on_the_loops(tmp_path: Path) ->
         machine(tmp_path, robot, kind="xyz", frame="slide", pose={"x": 0.0, "y": 0.3, "z": 0.0}, joints={"x": 0.0})
 
 
+def structure(folder: Path, gap: float) -> Kinematics:
+    """Two arms on one base whose ends are closed to each other; nothing moves."""
+    robot = Robot("base")
+    robot.add("left_mount", "fixed", "base", "left", (0.2, 0, 0))
+    robot.add("right_mount", "fixed", "base", "right", (0.2, gap, 0))
+    return machine(folder, robot, kind="fixed", frame="left", pose={}, joints={}, closures=[("left", "right", "frame")])
+
+
+def test_a_structure_that_closes(tmp_path: Path) -> None:
+    kinematics = structure(tmp_path, 0.0)
+    for configuration in (kinematics.solve({}), kinematics.newton({})):
+        assert configuration.q.shape == (0,)
+        assert configuration.placement("right").translation == pytest.approx([0.2, 0.0, 0.0])
+
+
+def test_a_structure_that_does_not_close(tmp_path: Path) -> None:
+    words = r"closures: found links that do not meet, and no joint that moves \(loop_2 open by 0\.01 m or rad\)"
+    with pytest.raises(DescriptionError, match=words):
+        structure(tmp_path, 0.01)
+
+
 def test_a_tool_frame_that_no_joint_moves(tmp_path: Path) -> None:
     robot = Robot("base")
     robot.add("x", "prismatic", "base", "slide", axis=(1, 0, 0))
