@@ -47,10 +47,11 @@ class MaterialOptions(Section):
         for name, (dimension, low, high, steel) in PLAUSIBLE.items():
             value, factor = float(getattr(self, name)), dimension.factor(units)
             if not low <= value <= high:
-                unit, found = dimension.label(units), f"{value:.4g} {dimension.label(SI)}"
+                unit = dimension.label(units)
+                in_si = "" if factor == 1.0 else f" ({value:.4g} {dimension.label(SI)})"
                 raise PydanticCustomError(
                     name,
-                    f"found {name} = {value / factor:.4g} {unit} ({found}), which no solid has; "
+                    f"found {name} = {value / factor:.4g} {unit}{in_si}, which no solid has; "
                     f"steel is {steel / factor:.4g} {unit}: check the units",
                 )
         if not -1.0 < self.nu < 0.5:
@@ -67,7 +68,8 @@ class SolidOptions(Section):
     @model_validator(mode="after")
     def _one_of_them(self) -> SolidOptions:
         if (self.material is None) == (not self.materials):
-            raise PydanticCustomError("material", "found both or neither, expected 'material' or 'materials'")
+            found = "neither" if self.material is None else "both"
+            raise PydanticCustomError("material", f"found {found}, expected 'material' or 'materials'")
         return self
 
 

@@ -171,8 +171,10 @@ def test_forgotten_units_are_noticed(tmp_path, caplog):
     tonnes = {"units": Units(length="mm", mass="kg")}
     with pytest.raises(ValidationError, match=r"density = 7.85e-09 kg/mm\^3 \(7.85 kg/m\^3\).* 7.85e-06 kg/mm\^3"):
         SolidOptions.model_validate({"material": {"E": 2.1e5, "nu": 0.3, "density": 7.85e-9}}, context=tonnes)
-    with pytest.raises(prs.DescriptionError, match=r"found E = 2.1e\+05 N/m\^2"):
+    with pytest.raises(prs.DescriptionError, match=r"found E = 2.1e\+05 N/m\^2, which no solid has"):
         prs.reduce("solid", path, units="m-N-kg-s", material=STEEL | {"E": 2.1e5}, **ends)
+    with pytest.raises(prs.DescriptionError, match="found neither, expected 'material' or 'materials'"):
+        prs.reduce("solid", path, units="m-N-kg-s", **ends)
     with caplog.at_level(logging.WARNING, logger="prs_model"):
         prs.reduce("solid", path, units="mm-N-tonne-s", material=STEEL, **ends)
     assert "its nodes are 0.0002 m apart; check 'units'" in caplog.text
