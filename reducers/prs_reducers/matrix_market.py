@@ -22,7 +22,7 @@ from prs_model.reduction import SuperElement
 from prs_model.reduction.storage import whole
 
 from .tables.dof_table import DofTable, digest, read_dof_table, write_dof_table
-from .tables.mtx import parse_mtx, write_mtx
+from .tables.mtx import is_mtx, parse_mtx, write_mtx
 
 
 class MatrixMarketOptions(Section):
@@ -37,38 +37,37 @@ class MatrixMarketOptions(Section):
 
 
 class MatrixMarketReducer(Reducer[MatrixMarketOptions]):
-    """K, M and a table of their rows (see `dof_table`). What a permuted row does shows in the gate only."""
+    """K, M and a table of their rows (see `dof_table`), which may say the units.
+
+    Rows in another order than the table's show in the physics gate only, and of a part held to the ground nowhere:
+    export it free and clamp it here.
+    """
 
     description: ClassVar[str] = "stiffness and mass as Matrix Market files, with a table of their rows"
     Options: ClassVar[type[Section]] = MatrixMarketOptions
     gives = "either"
-    units = "asked"
+    units = "optional"
     writes = (".mtx",)
 
     def read(self, part: PartRequest[MatrixMarketOptions]) -> FiniteElementModel | SuperElement:
         """A super-element where the table has modes or says so, full matrices otherwise. Raises PartFileError."""
         stiffness, mass, dofs = self.files(part)
+        text = _market(stiffness)
         table = read_dof_table(dofs)
-        table.check_units(part.file_units)
+        units = table.units(part.units) or part.file_units
         if table.places is None:
             raise PartFileError(dofs, "has no coordinates: write x, y, z after the component")
         matrices = LabelledMatrices(
             source=stiffness,
-            stiffness=_read(stiffness, "stiffness", table),
-            mass=_read(mass, "mass", table),
+            stiffness=_matrix(text, stiffness, "stiffness", table),
+            mass=_matrix(_market(mass), mass, "mass", table),
             nodes=table.nodes,
             components=table.components,
         )
         if table.is_reduced or part.options.reduced:
-            return super_element(
-                matrices,
-                table.places,
-                part.file_units,
-                modes=table.modes,
-                node_sets=table.node_sets,
-            )
+            return super_element(matrices, table.places, units, modes=table.modes, node_sets=table.node_sets)
         sets = {name: table.places.places(np.array(nodes), dofs) for name, nodes in table.node_sets.items()}
-        return full_model(matrices, table.places, part.file_units, node_sets=sets)
+        return full_model(matrices, table.places, units, node_sets=sets)
 
     def files(self, part: PartRequest[MatrixMarketOptions]) -> tuple[Path, ...]:
         """Stiffness, mass, table."""
@@ -136,8 +135,15 @@ def coordinates_of(element: SuperElement, path: Path) -> tuple[list[str], list[i
     return nodes, components
 
 
-def _read(path: Path, name: str, table: DofTable) -> csr_array:
+def _market(path: Path) -> str:
     text = read_text(path)
+    if not is_mtx(text):
+        what = "is no Matrix Market file (%%MatrixMarket ..); a .mtx of Abaqus is read by the reducer 'abaqus'"
+        raise PartFileError(path, what)
+    return text
+
+
+def _matrix(text: str, path: Path, name: str, table: DofTable) -> csr_array:
     matrix = parse_mtx(text, path, len(table.nodes))
     table.check_digest(name, text, path)
     return matrix

@@ -66,6 +66,23 @@ def test_units_that_contradict_the_table_are_refused(tmp_path: Path) -> None:
         prs.reduce("matrix_market", written(tmp_path), units="mm-N-tonne-s")
 
 
+def test_units_are_those_of_the_table_where_nobody_says_them(tmp_path: Path) -> None:
+    back = prs.reduce("matrix_market", written(tmp_path, "mm-N-tonne-s"))
+    np.testing.assert_allclose(back.positions, springs_and_mode().positions, rtol=1e-15)
+    with pytest.raises(prs.PartFileError, match=r"rod\.mtx: the file does not say its units"):
+        prs.read_part("matrix_market", rod(tmp_path))
+
+
+@pytest.mark.parametrize("comment", ["unit: mm-N-tonne-s", "mode: fixed-interface", "sets bore: 10 20"])
+def test_a_mistyped_fact_is_noticed(tmp_path: Path, caplog: pytest.LogCaptureFixture, comment: str) -> None:
+    source = rod(tmp_path)
+    table = tmp_path / "rod_dofs.txt"
+    table.write_text(f"# {comment}\n# written on: Monday\n{table.read_text()}")
+    prs.read_part("matrix_market", source, units="m-N-kg-s")
+    (record,) = caplog.records
+    assert f"rod_dofs.txt: the comment '# {comment}' says nothing here; did you mean" in record.getMessage()
+
+
 def test_an_averaged_node_cannot_be_written(tmp_path: Path) -> None:
     element = prs.reduce(
         "matrix_market",
@@ -127,7 +144,9 @@ DAMAGE = {
     "complex": ("rod.mtx", lambda text: text.replace("real", "complex"), "expected a matrix, coordinate or array"),
     "another size": ("rod_mass.mtx", lambda text: text.replace("5 5 9", "6 6 9"), "has 6 rows, expected 5"),
     "something behind a number": ("rod.mtx", lambda text: text.replace("5 4 ", "5 4 1 "), "found 4 numbers"),
-    "letters": ("rod.mtx", lambda text: text.replace("5 4 ", "5 4 x"), "expected a number"),
+    "a size of many digits": ("rod.mtx", lambda text: text.replace("5 5 9", "5 5 " + 5000 * "9"), "line 3, the sizes"),
+    "of Abaqus": ("rod.mtx", lambda text: "1,1, 1,1, 2.0\n2,1, 2,1, 3.0\n", "is read by the reducer 'abaqus'"),
+    "letters": ("rod.mtx", lambda text: text.replace("5 4 ", "5 4 x"), "line 11: found .*, expected a number"),
     "not a number": ("rod.mtx", lambda text: text.replace("5 4 -", "5 4 nan\n%"), "cut off|expected|finite"),
     "other kind": ("rod.mtx", lambda text: "PK\3\4\0" + text, "binary"),
     "table: row twice": ("rod_dofs.txt", lambda text: text.replace("5, 50", "4, 50"), "row 4 stands there twice"),

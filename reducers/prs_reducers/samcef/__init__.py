@@ -59,8 +59,7 @@ class SamcefReducer(Reducer[SamcefOptions]):
         folder, options = part.path.parent, part.options
         table = read_dof_table(folder / options.dofs)
         deck = read_deck(folder / options.deck) if options.deck is not None else None
-        units = _units(part, deck)
-        table.check_units(units)
+        units = _units(part, table, deck)
         stiffness, mass = _matrices(part.path, folder / options.mass if options.mass else None, len(table.nodes))
         matrices = LabelledMatrices(part.path, stiffness, mass, table.nodes, table.components)
         sets = {**_groups(table, deck), **table.node_sets}
@@ -72,17 +71,16 @@ class SamcefReducer(Reducer[SamcefOptions]):
         return (part.path, *(part.path.parent / name for name in named if name is not None))
 
 
-def _units(part: PartRequest[SamcefOptions], deck: Deck | None) -> Units:
-    """What the request says, else the deck. Raises PartFileError when they differ, or neither says."""
-    if deck is None or deck.units is None:
-        if part.units is None and deck is not None and deck.units_line:
-            raise PartFileError(
-                deck.source, f".UNIT '{deck.units_line}' is not understood: say 'units', such as mm-N-tonne-s"
-            )
-        return part.file_units
-    if part.units is not None and part.units != deck.units:
+def _units(part: PartRequest[SamcefOptions], table: DofTable, deck: Deck | None) -> Units:
+    """What the request, the deck and the table say. Raises PartFileError when they differ, or none of them says."""
+    if deck is not None and deck.units not in (None, part.units) and part.units is not None:
         raise PartFileError(deck.source, f".UNIT says '{deck.units_line}', and 'units' something else: correct one")
-    return deck.units
+    units = table.units(part.units or (deck.units if deck is not None else None))
+    if units is None and deck is not None and deck.units_line:
+        raise PartFileError(
+            deck.source, f".UNIT '{deck.units_line}' is not understood: say 'units', such as mm-N-tonne-s"
+        )
+    return units or part.file_units
 
 
 def _matrices(path: Path, mass_path: Path | None, rows: int) -> tuple[FloatArray, FloatArray]:

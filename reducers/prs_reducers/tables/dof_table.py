@@ -10,7 +10,7 @@ Words are separated by blanks, tabs, commas or semicolons; names with blanks sta
 from 1. A component is ux, uy, uz, rx, ry, rz or 1..6, and `mode` for a modal coordinate, whose node is its number. The
 heading and the coordinates may be absent. Lines that start with #, % or ! are comments; of these are understood
 
-    # units: mm-N-tonne-s          what the numbers are in, which must then be what the reader is told
+    # units: mm-N-tonne-s          what the numbers are in; the reader need not be told then, and not otherwise
     # reduced: true                a condensed part, though no modes are among its rows
     # modes: fixed-interface       the modes are mass-normalised and uncoupled from the nodes by stiffness
     # set bore: 11 12 13           a named set of nodes
@@ -19,6 +19,7 @@ heading and the coordinates may be absent. Lines that start with #, % or ! are c
 
 from __future__ import annotations
 
+import logging
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -29,13 +30,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from prs_model.arrays import FloatArray, IntArray
+from prs_model.description.problems import closest
 from prs_model.description.units import Units
 from prs_model.errors import PartFileError, short
 from prs_model.part_files import MODE, NodeTable, read_text
-from prs_model.part_files.text import number
+from prs_model.part_files.text import number, whole_number
 from prs_model.reduction.super_element import AXES
 
 from .mtx import check_end
+
+logger = logging.getLogger("prs_model")
 
 COMMENTS = ("#", "%", "!")
 HEADING = ("row", "node", "component", "x", "y", "z")
@@ -46,9 +50,9 @@ COMPONENTS = {
 }
 
 _WORD = re.compile(r'"([^"]*)"|([^\s,;"]+)')
-_FACT = re.compile(
-    r"[#%!]\s*(units|reduced|modes|stiffness-sha256|mass-sha256|set\s+(.+?))\s*:\s*(.*\S)\s*$", re.IGNORECASE
-)
+FACTS = ("units", "reduced", "modes", "stiffness-sha256", "mass-sha256")
+_FACT = re.compile(rf"[#%!]\s*({'|'.join(FACTS)}|set\s+(.+?))\s*:\s*(.*\S)\s*$", re.IGNORECASE)
+_REMARK = re.compile(r"[#%!]\s*([\w-]+)(\s+\S+)?\s*:\s*\S")
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,18 +84,19 @@ class DofTable:
         """What is promised of the modes: fixed-interface, or nothing."""
         return self.facts.get("modes", "")
 
-    def check_units(self, units: Units) -> None:
-        """Raises PartFileError when the table says other units than these."""
-        said = self.facts.get("units")
-        if said is None:
-            return
+    def units(self, said: Units | None) -> Units | None:
+        """What the table says, else what was said besides. Raises PartFileError when these differ."""
+        if "units" not in self.facts:
+            return said
         try:
-            written = Units.parse(said)
+            written = Units.parse(self.facts["units"])
         except ValueError as error:
             raise PartFileError(self.source, f"units: {error}") from error
-        if written != units:
-            found = f"{units.length}-{units.force}-{units.mass}-s"
-            raise PartFileError(self.source, f"is in {said}, and 'units' says {found}: correct one of them")
+        if said not in (None, written):
+            found = f"{said.length}-{said.force}-{said.mass}-s"
+            other = f"is in {self.facts['units']}, and 'units' says {found}: correct one of them"
+            raise PartFileError(self.source, other)
+        return written
 
     def check_digest(self, name: str, text: str, path: Path) -> None:
         """Raises PartFileError when the text of the file of `name` is not the one that the table was written with."""
@@ -121,7 +126,7 @@ def read_dof_table(path: Path) -> DofTable:
     for count, raw in enumerate(text.splitlines(), start=1):
         line = raw.strip()
         if line.startswith(COMMENTS):
-            _fact(line, facts, sets)
+            _fact(line, facts, sets, path)
             continue
         words = [quoted or plain for quoted, plain in _WORD.findall(line)]
         if not words or (not rows and _is_heading(words)):
@@ -163,15 +168,23 @@ def write_dof_table(
     return "\n".join(lines) + "\n"
 
 
-def _fact(line: str, facts: dict[str, str], sets: dict[str, tuple[str, ...]]) -> None:
+def _fact(line: str, facts: dict[str, str], sets: dict[str, tuple[str, ...]], path: Path) -> None:
     found = _FACT.match(line)
     if found is None:
+        _warn_of_near_fact(line, path)
         return
     name, set_name, value = found.groups()
     if set_name is not None:
         sets[set_name.strip()] = tuple(quoted or plain for quoted, plain in _WORD.findall(value))
     else:
         facts[name.lower()] = value
+
+
+def _warn_of_near_fact(line: str, path: Path) -> None:
+    remark = _REMARK.match(line)
+    near = closest(remark[1].lower(), (*FACTS, "set")) if remark is not None else None
+    if near is not None:
+        logger.warning("%s: the comment '%s' says nothing here; did you mean '%s'?", path.name, short(line, 60), near)
 
 
 def _check_facts(facts: Mapping[str, str], path: Path) -> None:
@@ -187,9 +200,9 @@ def _is_heading(words: list[str]) -> bool:
 
 def _row(words: list[str]) -> tuple[int, str, int, FloatArray | None]:
     """Row, node, component and coordinates. Raises ValueError."""
-    if not (words[0].isascii() and words[0].isdigit()) or int(words[0]) < 1:
-        raise ValueError(f"found row '{words[0]}', expected a whole number from 1 on")
-    row = int(words[0])
+    row = whole_number(words[0])
+    if row < 1:
+        raise ValueError("found row 0, expected rows from 1 on")
     if len(words) > 1 and words[-1].lower() == "mode" and len(words) <= 3:
         return row, words[1] if len(words) == 3 else words[0], MODE, None
     if len(words) not in (3, 6):

@@ -14,7 +14,9 @@ from scipy.sparse import coo_array, csr_array
 
 from prs_model.arrays import FloatArray
 from prs_model.errors import PartFileError, short
-from prs_model.part_files.text import number
+from prs_model.part_files.text import whole_number
+
+from .number_table import read_table
 
 BANNER = "%%matrixmarket"
 
@@ -32,15 +34,15 @@ def parse_mtx(text: str, path: Path, rows: int | None = None) -> csr_array:
     """
     layout, symmetric = _banner(text, path)
     check_end(text, path)
-    start, sizes = _sizes(text, path, 3 if layout == "coordinate" else 2)
+    start, line, sizes = _sizes(text, path, 3 if layout == "coordinate" else 2)
     if sizes[0] != sizes[1]:
         raise PartFileError(path, f"the matrix is {sizes[0]}x{sizes[1]}, expected a square one")
     if rows is not None and sizes[0] != rows:
         raise PartFileError(path, f"the matrix has {sizes[0]} rows, expected {rows}: a file of another part or export")
     n = sizes[0]
     if layout == "array":
-        return csr_array(_dense(numbers(text[start:], path, 1)[:, 0], n, symmetric, path))
-    entries = numbers(text[start:], path, 3) if sizes[2] else np.zeros((0, 3))
+        return csr_array(_dense(read_table(text[start:], path, 1, first_line=line)[:, 0], n, symmetric, path))
+    entries = read_table(text[start:], path, 3, first_line=line)
     if len(entries) != sizes[2]:
         raise PartFileError(path, f"found {len(entries)} entries, the file says {sizes[2]}: cut off or damaged")
     if rows is None and n > len(entries):
@@ -64,33 +66,6 @@ def check_end(text: str, path: Path) -> None:
         raise PartFileError(path, f"ends within its last line, '{last}': cut off? If it is whole, end the line")
 
 
-def numbers(text: str, path: Path, columns: int) -> FloatArray:
-    """(m, columns) numbers of text, one row a line. Raises PartFileError naming the line that is something else."""
-    try:
-        found = np.loadtxt(io.StringIO(text.replace("D", "E")), comments=None, ndmin=2)
-    except ValueError:
-        found = _fortran_numbers(text, path)
-    if found.shape[1] != columns:
-        raise PartFileError(path, f"found {found.shape[1]} numbers a line, expected {columns}")
-    return np.asarray(found, dtype=float)
-
-
-def _fortran_numbers(text: str, path: Path) -> FloatArray:
-    rows: list[list[float]] = []
-    for line in text.splitlines():
-        words = line.split()
-        if not words:
-            continue
-        if rows and len(words) != len(rows[0]):
-            what = f"found {len(words)} numbers, expected {len(rows[0])} as before"
-            raise PartFileError(path, f"'{short(line.strip())}': {what}: cut off or damaged")
-        try:
-            rows.append([number(word) for word in words])
-        except ValueError as error:
-            raise PartFileError(path, f"'{short(line.strip())}': {error}") from error
-    return np.array(rows, dtype=float).reshape(len(rows), -1)
-
-
 def _banner(text: str, path: Path) -> tuple[str, bool]:
     words = text.split("\n", 1)[0].lower().split()
     if not words or words[0] != BANNER:
@@ -103,18 +78,21 @@ def _banner(text: str, path: Path) -> tuple[str, bool]:
     return words[2], words[4] == "symmetric"
 
 
-def _sizes(text: str, path: Path, count: int) -> tuple[int, list[int]]:
-    """Where the entries start, and the numbers of the size line: the first that is neither comment nor blank."""
+def _sizes(text: str, path: Path, count: int) -> tuple[int, int, list[int]]:
+    """Where the entries start, in which line, and the numbers of the size line: the first no comment and not blank."""
     start = 0
-    while start < len(text):
-        end = text.find("\n", start) + 1 or len(text)
-        line = text[start:end].strip()
-        start = end
-        if line and not line.startswith("%"):
-            words = line.split()
-            if len(words) != count or not all(word.isascii() and word.isdigit() and int(word) >= 0 for word in words):
-                raise PartFileError(path, f"found size line '{short(line)}', expected {count} whole numbers")
-            return start, [int(word) for word in words]
+    for at, line in enumerate(io.StringIO(text), start=1):
+        start += len(line)
+        words = line.split()
+        if not words or words[0].startswith("%"):
+            continue
+        try:
+            sizes = [whole_number(word) for word in words]
+        except ValueError as error:
+            raise PartFileError(path, f"line {at}, the sizes: {error}") from error
+        if len(sizes) != count:
+            raise PartFileError(path, f"line {at}: found {len(sizes)} sizes, expected {count}")
+        return start, at + 1, sizes
     raise PartFileError(path, "has no size line: cut off")
 
 

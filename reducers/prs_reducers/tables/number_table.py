@@ -15,10 +15,13 @@ from prs_model.part_files.text import number
 def read_table(text: str, path: Path, columns: int, *, separator: str | None = None, first_line: int = 1) -> FloatArray:
     """(m, columns): every line of `text` that is not empty. separator: None for white space, else such as a comma.
 
-    first_line: the line of the file where `text` begins. Raises PartFileError naming the line that is wrong.
+    first_line: the line of the file where `text` begins. Fortran exponents (1.5D+02) are read. Raises PartFileError
+    naming the line that is wrong.
     """
+    if not text.strip():
+        return np.zeros((0, columns))
     try:
-        table = np.loadtxt(io.StringIO(text), delimiter=separator, comments=None, ndmin=2)
+        table = np.loadtxt(io.StringIO(text.replace("D", "E")), delimiter=separator, comments=None, ndmin=2)
     except ValueError:
         return _line_by_line(text, path, columns, separator, first_line)
     return table if table.shape[1] == columns else _line_by_line(text, path, columns, separator, first_line)
