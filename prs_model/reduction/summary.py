@@ -7,19 +7,16 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.linalg import null_space
 
 from ..arrays import FloatArray
 from ..errors import PrsError
 from ..finite_elements import MassProperties
-from ..linear_algebra import lowest_modes
 from .super_element import SuperElement
 from .travelling import TravellingElement
 
 HEAVIEST = 2.3e4  # kg/m^3, osmium in the box around the nodes
 FASTEST = 2.0e4  # m/s: twice the length times the first free frequency; sound in diamond
 LONGEST = 30.0  # m
-FREE = 1e-4  # of the first elastic frequency
 
 logger = logging.getLogger("prs_model")
 
@@ -63,13 +60,12 @@ class Summary:
 
 
 def summarize(element: SuperElement, count: int = 6, points: FloatArray | None = None) -> Summary:
-    """The figures of an element, with up to `count` fixed and free frequencies. Raises PrsError for a singular one.
+    """The figures of an element, with up to `count` fixed and free frequencies. Raises PrsError for an indefinite one.
 
     points: (p, 3) [m] of the whole part, where they are known; default: the surface's and the nodes'.
     """
     known = None if element.grounded else element.mass_properties()
-    free, fixed = _frequencies(element, np.eye(element.size), count + 6), _fixed(element, count)
-    elastic = free[free > FREE * free.max(initial=0.0)] if free.size else free
+    free, fixed = element.frequencies(max(1, count)), element.frequencies(count, held=True)
     whole = points is not None or element.surface is not None
     if points is None:
         surface = np.zeros((0, 3)) if element.surface is None else element.surface.points
@@ -83,9 +79,9 @@ def summarize(element: SuperElement, count: int = 6, points: FloatArray | None =
         modes=element.n_modes,
         grounded=element.grounded,
         properties=known,
-        fixed=fixed[:count],
-        free=elastic[:count],
-        surprises=tuple(_surprises(known, size, elastic, whole=whole)),
+        fixed=fixed,
+        free=free[:count],
+        surprises=tuple(_surprises(known, size, free, whole=whole)),
     )
 
 
@@ -107,21 +103,6 @@ def echo(element: SuperElement | TravellingElement, name: str, points: FloatArra
     logger.info("%s: %s, nodes in %s m%s", name, mass, size, tone)
     for surprise in summary.surprises:
         logger.warning("%s: %s", name, surprise)
-
-
-def _fixed(element: SuperElement, count: int) -> FloatArray:
-    """Frequencies with the motions of all nodes held."""
-    held = element.motions.reshape(-1, element.size)
-    inner = null_space(held / (np.linalg.norm(held) or 1.0), rcond=1e-10) if len(held) else np.eye(element.size)
-    return _frequencies(element, inner, count)
-
-
-def _frequencies(element: SuperElement, basis: FloatArray, count: int) -> FloatArray:
-    if basis.shape[1] == 0 or not np.any(element.mass):
-        return np.zeros(0)
-    mass, stiffness = basis.T @ element.mass @ basis, basis.T @ element.stiffness @ basis
-    values = lowest_modes((mass + mass.T) / 2.0, (stiffness + stiffness.T) / 2.0, count)[0]
-    return np.asarray(np.sqrt(np.maximum(values, 0.0)) / (2.0 * np.pi))
 
 
 def _surprises(known: MassProperties | None, size: FloatArray, free: FloatArray, *, whole: bool) -> list[str]:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arrays import FloatArray
-from ..errors import PrsError
+from ..errors import PrsError, short
 from ..finite_elements.mass import MassProperties, mass_properties
 from ..finite_elements.rigid_motion import transfer
 from .surface import Surface
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 AXES = ("ux", "uy", "uz", "rx", "ry", "rz")
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class SuperElement:
     """Reduced matrices of one part in its body frame, with n coordinates and k nodes.
 
@@ -63,6 +63,10 @@ class SuperElement:
         if len(self.labels) != n or not 0 <= self.n_modes <= n:
             raise PrsError(f"super-element: {len(self.labels)} labels and {self.n_modes} modes for {n} coordinates")
 
+    def __repr__(self) -> str:
+        held = ", grounded" if self.grounded else ""
+        return f"SuperElement({self.name!r}, {self.size} coordinates, nodes {short(', '.join(self.nodes))}{held})"
+
     @property
     def size(self) -> int:
         """Number of coordinates."""
@@ -97,6 +101,15 @@ class SuperElement:
         """Mass [kg], centre [m] and inertia about it [kg m^2] from the mass matrix in rigid motion."""
         phi = self.rigid_body_modes()
         return mass_properties(phi.T @ self.mass @ phi)
+
+    def frequencies(self, count: int, *, held: bool = False) -> FloatArray:
+        """The lowest natural frequencies [Hz]: free-free without the zeros of rigid motion, or with all nodes held.
+
+        A grounded part is free as its file holds it. Raises PrsError for an indefinite stiffness.
+        """
+        from .frequencies import free_frequencies, held_frequencies
+
+        return (held_frequencies if held else free_frequencies)(self, count)
 
     def check(self) -> GateReport:
         """Pass the physics gate. Raises PhysicsError naming the check that failed, its figure and the likely cause."""
