@@ -26,7 +26,7 @@ logger = logging.getLogger("prs_model")
 
 SAME_FREQUENCY = 1e-4  # SubDyn writes seven digits
 _BLOCK = re.compile(r"^!\s*(mass|stiffness|damping) matrix", re.IGNORECASE)
-_DIMENSION = re.compile(r"^!\s*dimension:?\s+(\d+)", re.IGNORECASE)
+_DIMENSION = re.compile(r"^!\s*dimension:?\s+(\d{1,9})\b", re.IGNORECASE)
 
 
 class OpenfastOptions(Section):
@@ -141,9 +141,10 @@ def _header(lines: list[str], name: str) -> float | None:
     for line in lines:
         if line.strip().lower().startswith(f"!{name}:"):
             try:
-                return number(line.split(":", 1)[1])
+                found = number(line.split(":", 1)[1])
             except ValueError:
                 return None
+            return found if np.isfinite(found) else None
     return None
 
 
@@ -171,10 +172,15 @@ def _square(lines: list[str], start: int, n: int, what: str, path: Path) -> Floa
 
 
 def _numbers(words: list[str], where: str, path: Path) -> list[float]:
+    """Finite numbers: one that is not would pass every comparison here."""
     try:
-        return [number(word) for word in words]
+        numbers = [number(word) for word in words]
     except ValueError as error:
         raise PartFileError(path, f"{where}: {error}") from error
+    if not np.all(np.isfinite(numbers)):
+        word = words[int(np.argmin(np.isfinite(numbers)))].strip()
+        raise PartFileError(path, f"{where}: found {short(word)}, expected a finite number")
+    return numbers
 
 
 def _subdyn(text: str, path: Path) -> SuperElement:
@@ -221,7 +227,7 @@ def _check_frequencies(stiffness: FloatArray, mass: FloatArray, said: FloatArray
 
 def _yaml_matrix(text: str, name: str, path: Path, rows: int) -> FloatArray:
     """(rows, columns) of the entry ``name: # rows x columns``, one list a line."""
-    head = re.search(rf"^{name}\s*:\s*#\s*(\d+)\s*x\s*(\d+).*\n", text, re.MULTILINE)
+    head = re.search(rf"^{name}\s*:\s*#\s*(\d{{1,9}})\s*x\s*(\d{{1,9}})\b.*\n", text, re.MULTILINE)
     if head is None:
         raise PartFileError(path, f"has no entry '{name}: # rows x columns': cut off, or of another version")
     if int(head[1]) != rows or (rows > 1 and int(head[2]) != rows):
