@@ -1,4 +1,4 @@
-"""Lengths in millimetres and angles in degrees, for messages and tables."""
+"""Lengths in millimetres, angles in degrees and figures, for messages and tables."""
 
 from __future__ import annotations
 
@@ -22,6 +22,12 @@ def readable_range(low: float, high: float, dimension: Dimension) -> str:
 def pose_text(pose: Mapping[str, float], coordinates: Mapping[str, Dimension]) -> str:
     """A pose [m, rad] in words, such as ``nutation 70 deg, z 1275 mm``."""
     return ", ".join(f"{name} {readable(pose[name], dimension)}" for name, dimension in coordinates.items())
+
+
+def figure(value: float, digits: int = 4) -> str:
+    """A number to so many digits, such as ``11600`` or ``0.35``; with an exponent only beyond a thousand million."""
+    text = f"{value:.{digits}g}"
+    return f"{value:.0f}" if "e+" in text and abs(value) < 1e9 else text
 
 
 def _number(value: float, dimension: Dimension) -> str:

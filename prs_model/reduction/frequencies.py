@@ -22,7 +22,7 @@ def free_frequencies(element: SuperElement, count: int) -> FloatArray:
     if element.grounded:
         return _frequencies(element, np.eye(element.size), count)
     found = _frequencies(element, _elastic(element), count + 6)
-    return found[found > np.sqrt(LOOSE * _fastest_rate(element)) / (2.0 * np.pi)][:count]
+    return np.asarray(found[found > np.sqrt(LOOSE * _fastest_rate(element)) / (2.0 * np.pi)][:count])
 
 
 def held_frequencies(element: SuperElement, count: int) -> FloatArray:

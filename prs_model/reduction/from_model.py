@@ -11,6 +11,8 @@ from ..description.schema import Interface
 from ..errors import PartFileError
 from ..finite_elements import FiniteElementModel
 from ..finite_elements.rigid_motion import transfer
+from .box import ENTRY as BOX
+from .box import box_text
 from .coupling import Tie
 from .craig_bampton import Reduction, craig_bampton
 from .interfaces import interface_ties
@@ -60,5 +62,5 @@ def to_element(
         grounded=grounded,
         surface=decimate(model, reduction.basis),
         labels=(*labels, *(f"mode {i + 1}" for i in range(p))),
-        provenance={**model.provenance, "modes": modes, "full_dofs": str(model.size)},
+        provenance={**model.provenance, "modes": modes, "full_dofs": str(model.size), BOX: box_text(model.coordinates)},
     )

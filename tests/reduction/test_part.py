@@ -188,20 +188,3 @@ def test_reduce_takes_plain_lists_and_arrays(folder):
         prs.reduce("solid", folder / "rod.msh", interfaces={"hinge": {"st": "x0"}}, material=STEEL)
     with pytest.raises(prs.UnknownNameError, match="Did you mean 'solid'"):
         prs.reduce("sold", folder / "rod.msh")
-
-
-def test_what_is_known_of_a_part_is_held_against_it(folder):
-    known = {"mass": 7850.0 * 0.35 * 0.05**2, "frequency": 2000.0, "tolerance": 0.2}
-    interfaces = {"hinge": {"set": "x0"}}
-    prs.reduce("solid", folder / "rod.msh", interfaces=interfaces, expected=known, **STEEL_MM)
-    lower = {"frequency": 1000.0}
-    with pytest.raises(
-        prs.PhysicsError, match=r"first frequency is 1000 Hz as expected: .* read \d+.* Hz; check 'units'"
-    ):
-        prs.reduce("solid", folder / "rod.msh", interfaces=interfaces, expected=lower, **STEEL_MM)
-    inches = STEEL_MM | {"units": "in-lbf-slinch-s"}
-    with pytest.raises(prs.PhysicsError, match=r"rod: mass is 6\.86875 kg as expected"):
-        prs.reduce("solid", folder / "rod.msh", interfaces=interfaces, expected=known, **inches)
-    held = {"clamped": ["x1"], "grounded": True, "expected": {"mass": 1.0}}
-    with pytest.raises(prs.PrsError, match="held to the ground shows no mass"):
-        prs.reduce("solid", folder / "rod.msh", interfaces=interfaces, **held, **STEEL_MM)
