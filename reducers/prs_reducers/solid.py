@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Iterator
+from pathlib import Path
 from typing import ClassVar
 
 import numpy as np
@@ -21,6 +22,7 @@ from prs_model.finite_elements import FiniteElementModel
 from prs_model.plugins import PartRequest, Reducer
 
 from .elements.tetrahedra import Material, assemble, face_areas, outer_faces
+from .meshes.keyword_deck import deck_files
 from .meshes.mesh_file import TetrahedralMesh, read_mesh
 from .meshes.mid_sides import check_mid_sides
 
@@ -81,6 +83,9 @@ class SolidReducer(Reducer[SolidOptions]):
     def read(self, part: PartRequest[SolidOptions]) -> FiniteElementModel:
         """Assemble the mesh; named groups of it become node sets, surfaces with their areas as weights."""
         return solid_model(read_mesh(part.path), part.options, Dimension(length=1).factor(part.file_units))
+
+    def files(self, part: PartRequest[SolidOptions]) -> tuple[Path, ...]:
+        return deck_files(part.path) if part.path.suffix.lower() == ".inp" else (part.path,)
 
 
 def solid_model(mesh: TetrahedralMesh, options: SolidOptions, scale: float = 1.0) -> FiniteElementModel:

@@ -81,3 +81,11 @@ def test_labels_of_a_deck_name_the_nodes_of_a_solid(tmp_path):
     assert found.node_ids is not None
     at = dict(zip(labels.tolist(), mesh.points, strict=True))
     np.testing.assert_allclose(found.coordinates, [at[label] for label in found.node_ids.tolist()], atol=1e-15)
+
+
+def test_a_deck_that_moves_its_nodes_is_no_solid_elsewhere(tmp_path):
+    """meshio reads it without a word as if *SYSTEM were not there."""
+    deck = write_deck(tmp_path / "box.inp", (mesh := box((0.3, 0.1, 0.1), (2, 1, 1))), np.arange(len(mesh.points)) + 1)
+    deck.write_text("*SYSTEM\n1., 0., 0.\n" + deck.read_text())
+    with pytest.raises(prs.PartFileError, match=r"line 1: \*SYSTEM is not read: write all nodes and elements out"):
+        prs.read_part("solid", deck, units="m-N-kg-s", material=STEEL)

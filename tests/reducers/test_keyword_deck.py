@@ -105,6 +105,67 @@ def test_sets_surfaces_and_a_moved_instance(tmp_path):
     np.testing.assert_allclose(mesh.table.coordinates, turned, atol=1e-12)
 
 
+TWO_BRICKS = nodes([*BRICK, *([x + 1, y, z] for x, y, z in (BRICK[1], BRICK[2], BRICK[5], BRICK[6]))]) + (
+    "*ELEMENT, TYPE=C3D8, ELSET=Left\n1, 1,2,3,4,5,6,7,8\n*ELEMENT, TYPE=C3D8\n2, 2,9,10,3,6,11,12,7\n"
+)
+
+
+def test_a_surface_without_face_labels_is_all_that_is_free(tmp_path):
+    """The left one of two bricks shares a face with the other, and five are free."""
+    mesh = read_deck_mesh(deck(tmp_path, TWO_BRICKS + "*SURFACE, NAME=Skin\nLeft,\n*SURFACE, NAME=One\n2\nLeft, s1\n"))
+    skin, one = (np.concatenate([corners for corners, _ in mesh.surfaces[name]]) for name in ("Skin", "One"))
+    inner = {1, 2, 5, 6}
+    assert len(skin) == 5
+    assert len(one) == 6
+    assert inner not in [set(face) for face in skin.tolist()]
+    assert sorted(one[-1].tolist()) == [0, 1, 2, 3]
+
+
+def test_a_surface_of_nodes_is_a_set(tmp_path):
+    mesh = read_deck_mesh(deck(tmp_path, TWO_BRICKS + "*SURFACE, NAME=Pins, TYPE=NODE\n5, 1.5\n7,\n"))
+    assert mesh.table.labels[mesh.node_sets["Pins"]].tolist() == [5, 7]
+
+
+@pytest.mark.parametrize(
+    ("name", "held"), [("XSYMM", [0, 4, 5]), ("zasymm", [0, 1, 5]), ("ENCASTRE", [*range(6)]), ("2, 3", [1, 2])]
+)
+def test_boundary_conditions_have_names(tmp_path, name, held):
+    mesh = read_deck_mesh(deck(tmp_path, TWO_BRICKS + f"*BOUNDARY\n3, {name}\n"))
+    assert mesh.held is not None
+    assert mesh.held.tolist() == [[2, component] for component in held]
+
+
+def test_a_full_line_goes_on_without_a_comma(tmp_path):
+    points = np.vstack([BRICK, [(np.array(BRICK[a]) + BRICK[b]) / 2 for a, b in EDGES[8]]])
+    rows = "7, " + ", ".join(map(str, range(1, 16))) + "\n16, 17, 18, 19, 20\n"
+    mesh = read_deck_mesh(deck(tmp_path, nodes(points) + "*ELEMENT, TYPE=C3D20R\n" + rows))
+    assert volume(mesh) == pytest.approx(1.0)
+
+
+LIGHT = """*ELEMENT, TYPE=S4R, ELSET=Shell
+1, 1,2,3,4
+*ELEMENT, TYPE=S4R, ELSET=Skin
+2, 5,6,7,8
+*ELEMENT, TYPE=SPRINGA, ELSET=Spring
+3, 1,9
+*SHELL SECTION, ELSET=Shell, MATERIAL=Steel
+1.,
+*SHELL SECTION, ELSET=Skin, MATERIAL=Foil
+1.,
+*MATERIAL, NAME=STEEL
+*DENSITY
+7.85e-9
+*MATERIAL, NAME=FOIL
+*ELASTIC
+210000., 0.3
+"""
+
+
+def test_elements_with_mass_are_told_from_those_without(tmp_path):
+    mesh = read_deck_mesh(deck(tmp_path, nodes([*BRICK, [5, 5, 5]]) + LIGHT))
+    assert mesh.table.labels[mesh.weighing].tolist() == [1, 2, 3, 4]
+
+
 def test_included_files_are_read_and_named(tmp_path):
     (tmp_path / "mesh").mkdir()
     inner = deck(tmp_path / "mesh", "*ELEMENT, TYPE=C3D4, ELSET=E\n1, 1,2,3,4\n", "elements.inc")
@@ -132,6 +193,11 @@ BAD = {
     "*NODE\n1, 0, 0, 0\n*INCLUDE, INPUT=part.inp\n": "\\*INCLUDE of part.inp, which includes it: a circle",
     "*NODE\n1, 0, 0, 0\n*INCLUDE, INPUT=lost.inc\n": "line 3: \\*INCLUDE of lost.inc: there is no such file",
     "*INSTANCE, NAME=A\n*INSTANCE, NAME=B\n*NODE\n1, 0, 0, 0\n": "line 2: a second \\*INSTANCE; .*merge",
+    "*SYSTEM\n10., 0., 0.\n*NODE\n1, 0, 0, 0\n": "line 1: \\*SYSTEM is not read: write all nodes",
+    "*NODE\n1, 0, 0, 0\n*NGEN\n1, 9, 2\n": "line 3: \\*NGEN is not read: write all nodes and elements out",
+    "*NODE, INPUT=nodes.txt\n": "line 1: \\*NODE, INPUT= is not read: use \\*INCLUDE",
+    "*NODE\n1, 0, 0, 0\n*TRANSFORM, NSET=99999\n1,0,0,0,1,0\n": "line 3: \\*TRANSFORM: found node 99999, which",
+    f"{TWO_BRICKS}*SURFACE, NAME=S\nLeft, SPOS\n": "line 19: .*found side 'SPOS' of element 1, a solid; expected S1",
     "*NODE, SYSTEM=C\n1, 1, 90, 0\n": "SYSTEM=C or S is not read: write rectangular coordinates",
 }
 

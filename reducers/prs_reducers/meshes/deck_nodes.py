@@ -2,22 +2,39 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from prs_model.arrays import FloatArray
 
-from .deck_sets import Sets, looked_up
+from .deck_sets import Sets, members_of
 from .keyword_deck import Card, Fields
 
 ONE_PART = (
     "a deck with several parts or instances numbers their nodes anew: merge them into one part, or write it without "
     "parts and assemblies"
 )
+GENERATORS = ("SYSTEM", "NGEN", "NCOPY", "NFILL", "NMAP", "ELGEN", "ELCOPY")
+"""Keywords that make nodes and elements, or move the nodes that follow."""
+
+
+def check_plain(cards: list[Card]) -> None:
+    """Raises PartFileError when nodes or elements are not all written out in rectangular coordinates of one system."""
+    for card in cards:
+        mesh = card.keyword in ("NODE", "ELEMENT")
+        if card.keyword in GENERATORS:
+            raise card.error(card.line, f"*{card.keyword} is not read: write all nodes and elements out as they are")
+        if mesh and card.options.get("INPUT"):
+            raise card.error(card.line, f"*{card.keyword}, INPUT= is not read: use *INCLUDE, INPUT=")
+        if mesh and card.options.get("SYSTEM", "R").upper() != "R":
+            raise card.error(card.line, "*NODE, SYSTEM=C or S is not read: write rectangular coordinates")
 
 
 def coordinates_of(cards: list[Card]) -> tuple[list[int], FloatArray]:
     """Labels and coordinates (k, 3) of all nodes, in the assembly's axes. Raises PartFileError."""
+    check_plain(cards)
     instances = [card for card in cards if card.keyword == "INSTANCE"]
     if len(instances) > 1:
         raise instances[1].error(instances[1].line, f"a second *INSTANCE; {ONE_PART}")
@@ -26,8 +43,6 @@ def coordinates_of(cards: list[Card]) -> tuple[list[int], FloatArray]:
     for card in cards:
         if card.keyword != "NODE":
             continue
-        if card.options.get("SYSTEM", "R").upper() != "R":
-            raise card.error(card.line, "*NODE, SYSTEM=C or S is not read: write rectangular coordinates")
         for line, fields in card.data:
             label = card.whole(line, fields[0])
             if label in places:
@@ -66,7 +81,8 @@ def local_frames(cards: list[Card], points: FloatArray, places: dict[int, int], 
     frames = np.tile(np.eye(3), (len(points), 1, 1))
     for card in transforms:
         name = card.option("NSET")
-        nodes = [places[int(name)]] if name.isdigit() else looked_up(card, card.line, sets, name)
+        one = replace(card, options={}, data=((card.line, (name,)),))
+        nodes = members_of(one, sets, places, "node")
         line, fields = card.data[0] if card.data else (card.line, Fields())
         first, second = np.reshape(card.floats(line, fields, 6), (2, 3))
         kind = card.options.get("TYPE", "R").upper()

@@ -18,7 +18,7 @@ class LabelledMesh:
     solids: solid elements (e, 4 to 20) by their number of nodes, ordered as Abaqus does. others: (m,) nodes of all
     other elements. node_sets: by name. surfaces: by name, the faces as corners and mid-side nodes. held: (node, 0..5)
     pairs (h, 2) held by boundary conditions, None where the file does not say. tied: nodes may be joined otherwise
-    than by elements, as by constraints and contact.
+    than by elements, as by constraints and contact. weighing: (w,) those of others whose elements have mass.
     """
 
     table: NodeTable
@@ -28,6 +28,7 @@ class LabelledMesh:
     surfaces: Mapping[str, list[tuple[IntArray, IntArray]]] = field(default_factory=dict)
     held: IntArray | None = None
     tied: bool = False
+    weighing: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
 
     @property
     def in_solids(self) -> IntArray:

@@ -9,6 +9,7 @@ from prs_model.arrays import BoolArray, FloatArray, IntArray
 from prs_model.errors import PartFileError, short
 from prs_model.finite_elements import FiniteElementModel
 from prs_model.part_files import LabelledMatrices
+from prs_model.reduction.super_element import AXES
 
 from .labelled_mesh import LabelledMesh
 
@@ -24,7 +25,7 @@ def check_against_mesh(model: FiniteElementModel, mesh: LabelledMesh, matrices: 
     """Raises PartFileError for a row of a solid that no solid has.
 
     A row without stiffness or mass; nodes that act on each other without a common element; a mass that differs along
-    x, y and z; rigid motion that costs energy where no held node is near.
+    x, y and z; rigid motion that costs energy where no held node is near. A shell or beam without mass is refused too.
     """
     _check_complete(model, mesh, matrices)
     _check_neighbours(model, mesh, matrices)
@@ -43,22 +44,26 @@ def missing_rows(matrices: LabelledMatrices, mesh: LabelledMesh) -> IntArray:
 
 
 def sentence_of(pairs: IntArray, mesh: LabelledMesh) -> str:
-    """The first few of (node, component) pairs, as ``10 uy, 14 uz ..``."""
-    names = [f"{mesh.table.labels[node]} u{'xyz'[component]}" for node, component in pairs[:4]]
+    """The first few of (node, 0..5) pairs, as ``10 uy, 14 uz ..``."""
+    names = [f"{mesh.table.labels[node]} {AXES[component]}" for node, component in pairs[:4]]
     return short(", ".join(names)) + (" .." if len(pairs) > 4 else "")
 
 
 def _check_complete(model: FiniteElementModel, mesh: LabelledMesh, matrices: LabelledMatrices) -> None:
-    solid = np.zeros(len(model.coordinates), dtype=bool)
+    """Translations of solids have stiffness and mass; those of other elements with mass have it where they resist."""
+    solid, weighing = np.zeros((2, len(model.coordinates)), dtype=bool)
     solid[mesh.in_solids] = True
-    of_solid = solid[model.dofs[:, 0]] & (model.dofs[:, 1] < 3)
-    for name, matrix in (("stiffness", model.stiffness), ("mass", model.mass)):
-        empty = np.flatnonzero(of_solid & (matrix.diagonal() <= 0.0))
+    weighing[mesh.weighing] = True
+    nodes, translation = model.dofs[:, 0], model.dofs[:, 1] < 3
+    stiff, heavy = model.stiffness.diagonal() > 0.0, model.mass.diagonal() > 0.0
+    lacking = {"stiffness": solid[nodes] & ~stiff, "mass": (solid[nodes] | weighing[nodes] & stiff) & ~heavy}
+    for name, lacks in lacking.items():
+        empty = np.flatnonzero(translation & lacks)
         if len(empty):
-            label = mesh.table.labels[model.dofs[empty[0], 0]]
+            label = mesh.table.labels[nodes[empty[0]]]
             raise PartFileError(
                 matrices.source,
-                f"{len(empty)} rows of solid elements have no {name}, the first at node {label}: the {name} file is "
+                f"{len(empty)} rows of elements with {name} have none, the first at node {label}: the {name} file is "
                 "truncated, or of another part",
             )
 
@@ -98,7 +103,12 @@ def _joined(mesh: LabelledMesh) -> csr_array:
 
 
 def _check_mass(model: FiniteElementModel, mesh: LabelledMesh, matrices: LabelledMatrices) -> None:
-    """A solid weighs the same along x, y and z: its mass is a number for each pair of nodes, times the identity."""
+    """A solid weighs the same along x, y and z: its mass is a number for each pair of nodes, times the identity.
+
+    Not where constraints, which may act along one axis, move the mass of a node to others.
+    """
+    if mesh.tied:
+        return
     only_solid = np.zeros(len(model.coordinates), dtype=bool)
     only_solid[np.setdiff1d(mesh.in_solids, mesh.others)] = True
     along = []
@@ -135,7 +145,7 @@ def _check_rows_far_from_held(model: FiniteElementModel, mesh: LabelledMesh, mat
         raise PartFileError(
             matrices.source,
             f"{np.count_nonzero(bad)} rows resist rigid motion though no held node is near (the first is node "
-            f"{mesh.table.labels[node]} u{'xyz'[component % 3]}): rows in another order, a damaged number, or the mesh "
+            f"{mesh.table.labels[node]} {AXES[component]}): rows in another order, a damaged number, or the mesh "
             "of another part",
         )
 

@@ -14,7 +14,7 @@ import numpy as np
 from prs_model.arrays import FloatArray, IntArray
 from prs_model.errors import PartFileError
 
-from .deck_nodes import coordinates_of
+from .deck_nodes import check_plain, coordinates_of
 from .gmsh_labels import node_labels
 from .gmsh_sections import check_sections
 from .keyword_deck import read_cards
@@ -87,13 +87,17 @@ def read_cells(path: Path) -> Any:
 
 
 def _labels(path: Path, points: FloatArray) -> IntArray | None:
-    """Labels of the points, where the file's own reader finds the same points in the same order."""
+    """Labels of the points, where the file's own reader finds the same points in the same order. Raises PartFileError
+    for a deck whose nodes are not all written out.
+    """
     if path.suffix.lower() == ".msh":
         return node_labels(path, points)
     if path.suffix.lower() != ".inp":
         return None
+    cards = read_cards(path)
+    check_plain(cards)  # meshio takes no notice of what it cannot read
     try:
-        labels, own = coordinates_of(read_cards(path))
+        labels, own = coordinates_of(cards)
     except PartFileError:  # such as a deck of several instances, whose labels are not unique
         return None
     return np.array(labels, dtype=np.int64) if np.array_equal(own, points) else None
