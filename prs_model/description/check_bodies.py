@@ -10,7 +10,7 @@ from .. import plugins
 from ..errors import PluginError, UnknownNameError
 from .messages import report
 from .problems import Place, not_known
-from .schema import Body, Box, Cylinder, Interface, Section, Selection
+from .schema import Body, Section
 from .subject import Subject
 from .units import Units
 
@@ -22,8 +22,6 @@ def check_bodies(subject: Subject) -> None:
     for place, _, body in subject.each_body():
         subject.check_link((*place, "frame"), body.frame)
         _check_ground(subject, place, body)
-        for name, interface in body.interfaces.items():
-            _check_interface(subject, interface_place(subject, place, body, name), interface)
 
 
 def options_in_si(body: Body, units: Units) -> dict[str, Any]:
@@ -101,56 +99,3 @@ def _check_ground(subject: Subject, place: Place, body: Body) -> None:
     if body.clamped and not body.grounded:
         message = "found clamped nodes, expected a grounded body; add 'grounded: true'"
         subject.problems.add((*place, "clamped"), message)
-
-
-def _check_interface(subject: Subject, place: Place, interface: Interface) -> None:
-    ways = {
-        "a selection (set, nodes, box, cylinder, plane)": not interface.is_empty(),
-        "node": interface.node is not None,
-        "members": bool(interface.members),
-    }
-    given = [way for way, present in ways.items() if present]
-    if len(given) > 1:
-        subject.problems.add(place, f"found {' and '.join(given)}, expected only one of them")
-    _check_selection(subject, place, interface)
-    _check_members(subject, place, interface)
-
-
-def _check_members(subject: Subject, place: Place, interface: Interface) -> None:
-    seen: set[str] = set()
-    for index, member in enumerate(interface.members):
-        where = (*place, "members", index)
-        if member.name in seen:
-            message = f"found '{member.name}' a second time, expected a name of its own for every member"
-            subject.problems.add((*where, "name"), message)
-        elif "." in member.name or not member.name:
-            subject.problems.add((*where, "name"), f"found '{member.name}', expected a name without dots")
-        elif member.is_empty():
-            subject.problems.add(where, "found no nodes, expected one or more of set, nodes, box, cylinder, plane")
-        seen.add(member.name)
-        _check_selection(subject, where, member)
-
-
-def _check_selection(subject: Subject, place: Place, selection: Selection) -> None:
-    if selection.box is not None:
-        _check_box(subject, (*place, "box"), selection.box)
-    if selection.cylinder is not None:
-        _check_cylinder(subject, (*place, "cylinder"), selection.cylinder)
-    if selection.plane is not None and not any(selection.plane.normal):
-        subject.problems.add((*place, "plane", "normal"), "found a zero normal, expected a direction")
-    if selection.nodes is not None and not selection.nodes:
-        subject.problems.add((*place, "nodes"), "found an empty list, expected node numbers")
-
-
-def _check_box(subject: Subject, place: Place, box: Box) -> None:
-    for axis in ("x", "y", "z"):
-        bounds = getattr(box, axis)
-        if bounds is not None and bounds[0] >= bounds[1]:
-            subject.problems.add((*place, axis), "found the bounds in falling order, expected [low, high]")
-
-
-def _check_cylinder(subject: Subject, place: Place, cylinder: Cylinder) -> None:
-    if not any(cylinder.axis):
-        subject.problems.add((*place, "axis"), "found a zero axis, expected a direction")
-    if cylinder.length is not None and cylinder.length[0] >= cylinder.length[1]:
-        subject.problems.add((*place, "length"), "found the bounds in falling order, expected [low, high]")

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 from .check_bodies import interface_place
 from .check_task import joint_dimension
+from .interface import Travel
 from .problems import Place, listed, not_known
-from .schema import Travel
 from .subject import Subject
 from .urdf import SLACK, Urdf, UrdfJoint
 

@@ -4,8 +4,13 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
+from pydantic import Discriminator, Field, Tag
 
+from .interface import Coupling, Tie
+from .interface import Interface as Interface
+from .interface import Member as Member
+from .interface import Point as Point
+from .interface import Selection as Selection
 from .quantity import (
     AxisRotationalStiffness,
     AxisStiffness,
@@ -30,16 +35,10 @@ from .quantity import (
     StiffnessTR,
     StiffnessTT,
 )
+from .section import Section as Section
 from .units import Units
 
 AXES = ("ux", "uy", "uz", "rx", "ry", "rz")
-
-Point = tuple[Length, Length, Length]
-NodeId = int | str
-
-
-class Section(BaseModel):
-    model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
 
 
 # ── task and closures ────────────────────────────────────────────────────────────────────────────────
@@ -63,7 +62,7 @@ class Task(Section):
     relative_to: str | None = None  # default: the root link
     workspace: dict[str, tuple[Number, Number]]
     reference: Reference
-    options: dict[str, Any] = {}
+    options: dict[str, Any] = Field(default_factory=dict)
 
 
 class Closure(Section):
@@ -75,86 +74,6 @@ class Closure(Section):
 
 
 # ── bodies ───────────────────────────────────────────────────────────────────────────────────────────
-
-Coupling = Literal["rigid", "averaged"]
-Tie = Literal["joint", "interface"]
-
-
-class Box(Section):
-    """An axis-aligned box in the part file's frame; an omitted axis is unbounded."""
-
-    x: tuple[Length, Length] | None = None
-    y: tuple[Length, Length] | None = None
-    z: tuple[Length, Length] | None = None
-
-
-class Cylinder(Section):
-    """Nodes within `tolerance` of the surface of a cylinder of `radius` about the line through `point` along `axis`."""
-
-    point: Point
-    axis: tuple[Number, Number, Number]
-    radius: PositiveLength
-    tolerance: PositiveLength
-    length: tuple[Length, Length] | None = None  # extent along the axis, measured from `point`
-
-
-class Plane(Section):
-    """Nodes within `tolerance` of the plane through `point` with this normal."""
-
-    point: Point
-    normal: tuple[Number, Number, Number]
-    tolerance: PositiveLength
-
-
-class Selection(Section):
-    """Which finite-element nodes of the part belong to an interface: named one way, or several to intersect."""
-
-    set: str | None = None
-    nodes: tuple[NodeId, ...] | None = None
-    box: Box | None = None
-    cylinder: Cylinder | None = None
-    plane: Plane | None = None
-
-    def is_empty(self) -> bool:
-        return all(getattr(self, way) is None for way in Selection.model_fields)
-
-    def alone(self) -> Selection:
-        """The selection without what a Member or an Interface adds to it."""
-        return Selection(**{way: getattr(self, way) for way in Selection.model_fields})
-
-
-class Member(Selection):
-    """One interface of a joint that has several; `name` is the one the joint uses."""
-
-    name: str
-    at: Point | None = None  # default: the (area-weighted) centre of its nodes
-
-
-class Travel(Section):
-    """The interface travels along the body with a URDF joint.
-
-    `along` is the direction of travel in the body frame. Stations are values of the joint. With ``reduced`` the body is
-    reduced once per station with its contact there and its matrices are splined in between; with ``stations`` every
-    station keeps its own node and the contact is read between them. That costs six coordinates a station, and wants
-    averaged coupling: rigid contacts at all stations at once stiffen the whole part, wherever the contact is. `at`,
-    boxes and cylinders of the interface describe the contact at joint value zero and move along with it.
-    """
-
-    joint: str
-    along: tuple[Number, Number, Number]
-    stations: Annotated[tuple[Number, ...], Field(min_length=4)]
-    method: Literal["reduced", "stations"] = "reduced"
-
-
-class Interface(Selection):
-    """Where a joint takes hold of a body: one selection of nodes, or one per member."""
-
-    at: Point | None = None  # the condensation node in the body frame; default: centre of the nodes
-    node: NodeId | None = None  # one node of the part by its name or number; default for reduced parts: this name
-    members: tuple[Member, ...] = ()
-    coupling: Coupling | None = None
-    tie: Tie | None = None
-    travel: Travel | None = None
 
 
 class Expected(Section):
@@ -178,8 +97,8 @@ class Body(Section):
     reducer: str
     source: str | None = None
     units: str | None = None  # of the part file, such as mm-N-tonne-s
-    options: dict[str, Any] = {}
-    interfaces: dict[str, Interface] = {}
+    options: dict[str, Any] = Field(default_factory=dict)
+    interfaces: dict[str, Interface] = Field(default_factory=dict)
     clamped: tuple[str, ...] = ()  # node sets of the part file held to the ground before reduction
     grounded: bool = False
     expected: Expected | None = None
@@ -343,9 +262,9 @@ class MachineFile(Section):
     title: str = ""
     urdf: str
     units: Units = Units()
-    symmetry: dict[str, tuple[int | str, ...]] = {}
+    symmetry: dict[str, tuple[int | str, ...]] = Field(default_factory=dict)
     task: Task
-    closures: dict[str, Closure] = {}
+    closures: dict[str, Closure] = Field(default_factory=dict)
     reduction: ReductionDefaults = ReductionDefaults()
     bodies: dict[str, Body]
     joints: dict[str, Joint]

@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from .expand import E, instances, substituted
+from .interface import Tie
 from .problems import Place, Problems, not_known
-from .schema import Body, Closure, Joint, MachineFile, Tie
+from .schema import Body, Closure, Joint, MachineFile
 from .urdf import Urdf
 
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from ..arrays import FloatArray, IntArray
-from ..description.schema import Selection
+from ..description.interface import Selection
 from ..errors import PartFileError, PrsError
 from ..linear_algebra import lowest_eigenvalues
 from .mass import MassProperties, mass_properties

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import BoolArray, FloatArray, IntArray
+from ..description.interface import Box, Cylinder, NodeId, Plane, Selection
 from ..description.problems import did_you_mean
-from ..description.schema import Box, Cylinder, NodeId, Plane, Selection
 from ..errors import PartFileError
 
 Mask = BoolArray
@@ -77,9 +77,9 @@ def _masks(model: LabelledNodes, selection: Selection, shift: FloatArray, entry:
     if selection.box is not None:
         yield "box", _in_box(points, selection.box, slack)
     if selection.cylinder is not None:
-        yield "cylinder", _on_cylinder(points, selection.cylinder, slack, model.source, entry)
+        yield "cylinder", _on_cylinder(points, selection.cylinder, slack)
     if selection.plane is not None:
-        yield "plane", _on_plane(points, selection.plane, model.source, entry)
+        yield "plane", _on_plane(points, selection.plane)
 
 
 def _mask_of(model: LabelledNodes, nodes: IntArray) -> Mask:
@@ -112,11 +112,8 @@ def _in_box(points: FloatArray, box: Box, slack: float) -> Mask:
     return inside
 
 
-def _on_cylinder(points: FloatArray, cylinder: Cylinder, slack: float, source: str, entry: str) -> Mask:
-    axis = np.array(cylinder.axis, dtype=float)
-    if not np.any(axis):
-        raise PartFileError(source, f"{entry}.cylinder.axis: found (0, 0, 0), expected a direction")
-    axis /= np.linalg.norm(axis)
+def _on_cylinder(points: FloatArray, cylinder: Cylinder, slack: float) -> Mask:
+    axis = np.array(cylinder.axis, dtype=float) / np.linalg.norm(cylinder.axis)
     arms = points - np.array(cylinder.point, dtype=float)
     along = arms @ axis
     radius = np.linalg.norm(arms - np.outer(along, axis), axis=1)
@@ -126,11 +123,9 @@ def _on_cylinder(points: FloatArray, cylinder: Cylinder, slack: float, source: s
     return np.asarray(on)
 
 
-def _on_plane(points: FloatArray, plane: Plane, source: str, entry: str) -> Mask:
-    normal = np.array(plane.normal, dtype=float)
-    if not np.any(normal):
-        raise PartFileError(source, f"{entry}.plane.normal: found (0, 0, 0), expected a direction")
-    distance = (points - np.array(plane.point, dtype=float)) @ (normal / np.linalg.norm(normal))
+def _on_plane(points: FloatArray, plane: Plane) -> Mask:
+    normal = np.array(plane.normal, dtype=float) / np.linalg.norm(plane.normal)
+    distance = (points - np.array(plane.point, dtype=float)) @ normal
     return np.asarray(np.abs(distance) <= plane.tolerance)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from ..arrays import FloatArray, IntArray
-from ..description.schema import Coupling
+from ..description.interface import Coupling
 from ..errors import PartFileError
 from ..finite_elements import FiniteElementModel
 

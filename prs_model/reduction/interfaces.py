@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..description.schema import Coupling, Interface, Member, Point, Selection
+from ..description.interface import Coupling, Interface, Member, Point, Selection
 from ..errors import PartFileError
 from ..finite_elements import FiniteElementModel
 from ..finite_elements.selection import select

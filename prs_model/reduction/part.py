@@ -13,9 +13,10 @@ from pydantic import ValidationError
 
 from .. import plugins
 from ..arrays import FloatArray
+from ..description.interface import Coupling, Interface, NodeId
 from ..description.messages import report
 from ..description.problems import Place, Problems
-from ..description.schema import Body, Coupling, Interface, NodeId, ReductionDefaults, Section
+from ..description.schema import Body, ReductionDefaults, Section
 from ..description.units import SI, Units
 from ..errors import PartFileError, PrsError
 from ..finite_elements import FiniteElementModel

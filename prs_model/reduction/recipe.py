@@ -9,7 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ..description.schema import Body, Coupling, Interface, ReductionDefaults, Section, Tie
+from ..description.interface import Coupling, Interface, Tie
+from ..description.schema import Body, ReductionDefaults
+from ..description.section import Section
 
 VERSION = 3  # raised when the reduction itself changes its results
 

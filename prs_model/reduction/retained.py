@@ -8,8 +8,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
+from ..description.interface import Coupling, Interface, Selection
 from ..description.problems import did_you_mean
-from ..description.schema import Coupling, Interface, Selection
 from ..errors import PartFileError
 from ..finite_elements.rigid_motion import transfer
 from ..finite_elements.selection import select

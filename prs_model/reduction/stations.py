@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..arrays import FloatArray
-from ..description.schema import Interface, Travel
+from ..description.interface import Interface, Travel
 from ..errors import PartFileError
 from ..finite_elements import FiniteElementModel
 from .contact import reduction_per_station

@@ -180,7 +180,7 @@ PARTS = [
     yaml("units of a file in SI", BRIDGE, "    reducer: npz\n    source: machine.yaml\n    units: m-N-kg-s\n",
          "bodies.bridge.units", "are in SI: remove 'units'", at="    units: m-N-kg-s"),
     yaml("normal of no plane", *interface("{plane: {point: [0, 0, 0], normal: [0, 0, 0], tolerance: 1}}"),
-         "bodies.ram.interfaces.slide.plane.normal", "found a zero normal"),
+         "bodies.ram.interfaces.slide.plane.normal", "expected a direction"),
     yaml("units of no file", "frame: bed\n    reducer", "frame: bed\n    units: mm\n    reducer", "bodies.bed.units",
          "found units, expected none"),
     yaml("modes of a rigid body", "frame: bed\n    reducer", "frame: bed\n    modes: 5\n    reducer",
