@@ -13,10 +13,9 @@ import numpy as np
 
 from .. import plugins
 from ..arrays import FloatArray
-from ..description.units import Units
 from ..finite_elements import FiniteElementModel
 from ..reduction import SuperElement, read_part, reduce
-from ..reduction.part import validated
+from ..reduction.read_files import read_files
 from ..reduction.summary import summarize
 
 
@@ -60,7 +59,7 @@ class Sample:
 
     def read(self) -> FiniteElementModel | SuperElement:
         """What the reducer gives, before reduction and the physics gate."""
-        return read_part(self.reducer, self.source, units=self.units, **self.options)
+        return read_part(self.reducer, self.source, units=self.units, options=self.options)
 
     def reduce(self) -> SuperElement:
         """The super-element at the sample's interfaces, past the physics gate."""
@@ -72,15 +71,12 @@ class Sample:
             modes=self.modes,
             grounded=self.grounded,
             clamped=self.clamped,
-            **self.options,
+            options=self.options,
         )
 
     def files(self) -> tuple[Path, ...]:
         """What the reducer says it reads and is there, the source first."""
-        options = validated(self.plugin.Options, self.options, self.reducer, (), Units())
-        units = None if self.units is None else Units.parse(self.units)
-        request = plugins.PartRequest(self.path.stem, self.path, options, units)
-        return tuple(dict.fromkeys(file for file in self.plugin.files(request) if file.is_file()))
+        return read_files(self.reducer, self.path, units=self.units, options=self.options)
 
     def copied(self, folder: Path) -> Sample:
         """The sample with its files, and nothing else, copied to a folder; they lie to each other as they did."""
