@@ -18,7 +18,8 @@ from prs_model.testing.element import plain_element
 from prs_reducers.ansys import load_full
 from prs_reducers.meshes.mesh_file import TetrahedralMesh
 from tests.meshes import STEEL, box, steel, write
-from tests.reducers import test_ansys, test_nastran_op2, test_samcef
+from tests.reducers import test_ansys, test_samcef
+from tests.reducers.writers.extdb import write_extdb
 from tests.superelements import DATA, reference
 
 BLOCK, COARSE, FINE = (0.12, 0.04, 0.03), (2, 1, 1), (3, 1, 1)  # m, cells
@@ -153,7 +154,7 @@ def written(reducer: str, path: Path, unseen: dict[str, str]) -> Sample:
 
 def extdb(folder: Path) -> Sample:
     """DMIGOP2 as it is documented, without coordinates of its own for units: lengths in m."""
-    path = test_nastran_op2.write(folder / "part.op2", plain_element())
+    path = write_extdb(folder / "part.op2", plain_element())
     return Sample("nastran", path, "m-N-kg-s", {}, PLAIN, mass=3.5, unseen=ANY_NUMBER)
 
 

@@ -96,6 +96,16 @@ class TestExports:
 
 @needs_data
 class TestAssembly:
+    def test_its_op4_names_the_op2(self) -> None:
+        for options in ({}, {"superelement": 101}):
+            with pytest.raises(prs.PartFileError, match=r"the \.op4 of a nas2cam assembly: give nas2cam\.op2"):
+                read(NAS2CAM.with_suffix(".op4"), **options)
+
+    def test_its_matrices(self) -> None:
+        sizes = {int(number): tuple(size) for number, size in reference("nastran_extseout/nas2cam")["kaa"].items()}
+        expected = {f"{name} {number}": size for number, size in sizes.items() for name in ("KAA", "MAA")}
+        assert nastran.matrices(NAS2CAM) == expected
+
     def test_superelements_and_the_solvers_frequencies(self) -> None:
         expected = reference("nastran_extseout/nas2cam")
         found = {each.number: each for each in nastran.superelements(NAS2CAM)}
@@ -127,7 +137,10 @@ class TestAssembly:
         with pytest.raises(prs.PartFileError, match=r"superelement 7 is not there, .* one of 101, 102 "):
             read(NAS2CAM, superelement=7)
 
-    def test_a_cut_op2_file(self, tmp_path: Path) -> None:
+    def test_a_cut_op2_file_and_one_alone(self, tmp_path: Path) -> None:
+        (tmp_path / "nas2cam.op2").write_bytes(NAS2CAM.read_bytes())
+        with pytest.raises(prs.PartFileError, match=r"nas2cam\.op2: .*no nas2cam\.op4 is there: .*option 'op4'"):
+            read(tmp_path / "nas2cam.op2", superelement=101)
         shutil.copy(NAS2CAM.with_suffix(".op4"), tmp_path)
         (tmp_path / "nas2cam.op2").write_bytes(NAS2CAM.read_bytes()[:-500])
         with pytest.raises(prs.PartFileError, match="truncated"):
@@ -193,6 +206,17 @@ class TestCompanions:
         part.with_suffix(".pch").write_text(lines)
         with pytest.raises(prs.PartFileError, match=r"EXTRN and ASET differ at 3\.5"):
             prs.read_part("nastran", part, units=AS_WRITTEN)
+
+    def test_text_that_is_no_op4(self, part: Path) -> None:
+        part.write_text("Dear colleague,\nthe matrix is attached.\n")
+        with pytest.raises(prs.PartFileError, match="begins with 'Dear colleague,', expected a matrix's columns"):
+            prs.read_part("nastran", part, units=AS_WRITTEN)
+        with pytest.raises(prs.PartFileError, match="begins with 'Dear colleague,', expected a matrix's columns"):
+            nastran.matrices(part)
+
+    def test_units_are_asked_for(self, part: Path) -> None:
+        with pytest.raises(prs.PartFileError, match=r"part\.op4: the file does not say its units: add 'units'"):
+            prs.read_part("nastran", part)
 
     def test_a_matrix_cut_short(self, part: Path) -> None:
         part.write_bytes(part.read_bytes()[:9000])

@@ -1,80 +1,24 @@
-"""EXTSEOUT(DMIGOP2): a tiny writer of the documented records, and a real file with DMIG records."""
+"""EXTSEOUT(DMIGOP2): files as they are documented, and a real one with DMIG records."""
 
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import prs_model as prs
-from prs_model.reduction import SuperElement
 from prs_model.testing.element import plain_element
 from prs_reducers import nastran
+from tests.reducers.writers.extdb import END, write_extdb
 
 UNITS = "m-N-kg-s"
-GRID, GRID_DOUBLE, CORD2R = (4501, 45, 1), (4501, 45, 1120001), (2101, 21, 8)
-SPOINT, DMIG = (5551, 49, 105), (114, 1, 120)
-
-
-def record(data: bytes) -> bytes:
-    return struct.pack("<i", len(data)) + data + struct.pack("<i", len(data))
-
-
-def key(*values: int) -> bytes:
-    return b"".join(record(struct.pack("<i", value)) for value in values)
-
-
-def block(name: str, records: Iterable[bytes]) -> bytes:
-    """Name, trailer, then records numbered from -2, each of one chunk, and an empty last one."""
-    out = key(2) + record(name.ljust(8).encode()) + key(-1, 7) + record(struct.pack("<7i", 101, 0, 0, 0, 0, 0, 0))
-    number = -2
-    for data in records:
-        out += key(number, 1, 0, len(data) // 4) + record(data)
-        number -= 1
-    return out + key(number, 1, 0, 0)
-
-
-def dmig(matrix: np.ndarray, dofs: list[tuple[int, int]]) -> bytes:
-    out = struct.pack("<3i8s7i", *DMIG, b"EXTDB   ", 0, 6, 2, 2, 0, 0, len(matrix))
-    for column, label in enumerate(dofs):
-        out += struct.pack("<2i", *label)
-        for row in range(column, len(dofs)):
-            if matrix[row, column]:
-                out += struct.pack("<2id", *dofs[row], matrix[row, column])
-        out += struct.pack("<2i", -1, -1)
-    return out + struct.pack("<2i", -1, -1)
-
-
-def write(path: Path, element: SuperElement, *, directory: Iterable[str] | None = None, double: bool = True) -> Path:
-    layout, head = ("<2i3d3i", GRID_DOUBLE) if double else ("<2i3f3i", GRID)
-    places = zip(element.nodes, element.positions, strict=True)
-    grids = b"".join(struct.pack(layout, int(node), 0, *place, 0, 0, 0) for node, place in places)
-    modes = [900 + index for index in range(element.n_modes)]
-    dofs = [(int(node), component) for node in element.nodes for component in range(1, 7)] + [
-        (mode, 0) for mode in modes
-    ]
-    system = struct.pack("<4i9f", 5, 1, 2, 0, 0, 0, 0, 0, 0, 1, 1, 0, 0)
-    blocks = {
-        "GEOM1EX": [b"GEOM1   ", struct.pack("<3i", *CORD2R) + system, struct.pack("<3i", *head) + grids],
-        "GEOM2EX": [b"GEOM2   ", struct.pack("<3i", *SPOINT) + struct.pack(f"<{len(modes)}i", *modes)],
-        "MATK": [b"EXTDB   ", dmig(element.stiffness, dofs)],
-        "MATM": [b"EXTDB   ", dmig(element.mass, dofs)],
-    }
-    names = list(directory) if directory is not None else list(blocks)
-    listed = [name.ljust(8).encode() for name in ("XSOP2DIR", "PVT0", *names)]
-    head_ = key(3) + record(struct.pack("<3i", 1, 2, 26)) + key(7) + record(b"NASTRAN FORT TAPE ID CODE - ")
-    head_ += key(2) + record(b"NX2019  ") + key(-1, 0)
-    data = head_ + block("XSOP2DIR", listed) + block("PVT0", [b"PVT0    "])
-    path.write_bytes(data + b"".join(block("EXTDB", records) for records in blocks.values()) + key(0))
-    return path
 
 
 def test_what_is_written_as_documented_is_read(tmp_path: Path) -> None:
     element = plain_element()
-    found = prs.read_part("nastran", write(tmp_path / "part.op2", element), units=UNITS)
+    found = prs.read_part("nastran", write_extdb(tmp_path / "part.op2", element), units=UNITS)
     found.check()
     assert found.nodes == element.nodes
     assert found.n_modes == element.n_modes
@@ -83,12 +27,14 @@ def test_what_is_written_as_documented_is_read(tmp_path: Path) -> None:
     assert nastran.matrices(tmp_path / "part.op2") == {"MATK": (element.size,) * 2, "MATM": (element.size,) * 2}
 
 
-def test_coarse_places_are_refused_and_replaced(tmp_path: Path) -> None:
-    """In single precision 0.1 is off by 1e-9, and K moves as a rigid body no more; GRID entries put that right."""
+def test_coarse_places_are_told_and_replaced(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    """In single precision 0.1 is off by 1e-9, which the gate lets pass; GRID entries put that right."""
     element = plain_element()
-    path = write(tmp_path / "part.op2", element, double=False)
+    path = write_extdb(tmp_path / "part.op2", element, double=False)
     coarse = prs.read_part("nastran", path, units=UNITS)
     assert np.abs(coarse.positions - element.positions).max() > 1e-10
+    assert "part.op2: its points have places of seven digits (single precision)" in caplog.text
+    caplog.clear()
     places = zip(element.nodes, element.positions, strict=True)
     (tmp_path / "grids.bdf").write_text(
         "".join(
@@ -98,24 +44,48 @@ def test_coarse_places_are_refused_and_replaced(tmp_path: Path) -> None:
     )
     found = prs.read_part("nastran", path, units=UNITS, grids="grids.bdf")
     assert np.array_equal(found.positions, element.positions)
+    assert not caplog.text
 
 
 @pytest.mark.parametrize(
     ("names", "said"),
     [
         (["GEOM1EX", "GEOM2EX", "MATK"], "XSOP2DIR names 3 data blocks, but 4 are there: export EXTSEOUT.*MATOP4"),
-        (["GEOM1EX", "GEOM2EX", "MATM", "MATP"], "unknown matrix 'MATK'"),
+        (["GEOM1EX", "GEOM2EX", "MATM", "MATP"], "it has no stiffness matrix MATK, only MATM, MATP"),
         (["GEOM1EX", "GEOM2EX", "MATK", "MATK"], "two matrices MATK"),
     ],
 )
 def test_a_directory_that_is_another(tmp_path: Path, names: list[str], said: str) -> None:
-    path = write(tmp_path / "part.op2", plain_element(), directory=names)
+    path = write_extdb(tmp_path / "part.op2", plain_element(), directory=names)
     with pytest.raises(prs.PartFileError, match=said):
         prs.read_part("nastran", path, units=UNITS)
 
 
+@pytest.mark.parametrize(
+    ("end", "said"),
+    [
+        (b"", "does not end with its end mark"),
+        (END + bytes(4), r"ends within column -1\.-1"),
+        (END + END, "does not end with its end mark"),
+    ],
+)
+def test_matrices_end_with_their_end_mark(tmp_path: Path, end: bytes, said: str) -> None:
+    path = write_extdb(tmp_path / "part.op2", plain_element(), end=end)
+    with pytest.raises(prs.PartFileError, match=said):
+        prs.read_part("nastran", path, units=UNITS)
+
+
+def test_a_grid_point_is_no_mode(tmp_path: Path) -> None:
+    element = plain_element()
+    path = write_extdb(tmp_path / "part.op2", element)
+    data = path.read_bytes()
+    path.write_bytes(data.replace(struct.pack("<2i", 23, 6), struct.pack("<2i", 23, 0)))
+    with pytest.raises(prs.PartFileError, match=r"row 23\.0 belongs to no SPOINT entry"):
+        prs.read_part("nastran", path, units=UNITS)
+
+
 def test_a_cut_file_at_every_place(tmp_path: Path) -> None:
-    data = write(tmp_path / "part.op2", plain_element()).read_bytes()
+    data = write_extdb(tmp_path / "part.op2", plain_element()).read_bytes()
     for cut in range(0, len(data) - 12, 997):
         (tmp_path / "cut.op2").write_bytes(data[:cut])
         with pytest.raises(prs.PartFileError):

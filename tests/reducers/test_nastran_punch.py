@@ -66,6 +66,15 @@ def test_a_punch_of_results_is_none() -> None:
 
 
 @needs_data
+def test_a_punch_without_a_mass() -> None:
+    """The stiffness is not offered for it."""
+    with pytest.raises(
+        prs.PartFileError, match=r"it has no mass matrix MAAX, only KAAX, PAX: export it too, .*'mass'$"
+    ):
+        prs.read_part("nastran", DATA / "dmig_punch" / "dmig_sparse.pch", units=UNITS)
+
+
+@needs_data
 def test_a_punch_without_places() -> None:
     with pytest.raises(prs.PartFileError, match=r"no GRID entries.* option 'grids'"):
         prs.read_part("nastran", DATA / "dmig_punch" / "dmig.pch", units=UNITS)
@@ -94,7 +103,8 @@ def test_places_from_a_whole_deck(tmp_path: Path) -> None:
         ("2,2,-5.", "2,2,-5.x", r"line 5, DMIG: field 12 is '-5\.x', expected a finite number"),
         ("2,2,-5.", "2,8,-5.", r"entry at 2\.8, 1\.2, expected points with components 0 to 6"),
         (",2,2,-5.\n", ",2,2,-5.\n,2,2,-5.\n", r"two entries at 2\.2, 1\.2"),
-        ("DMIG,KAAX,2,2,,2,2,5.\n", "DMIG,KAAX,2,2,,1,2,-5.,,2,2,5.\n", r"two entries at 1\.2, 2\.2"),
+        ("DMIG,KAAX,2,2,,2,2,5.\n", "DMIG,KAAX,2,2,,1,2,-5.,,+\n,2,2,5.\n", r"two entries at 1\.2, 2\.2"),
+        (",2,2,-5.\n", ",2,2,-5.,,7,0,3.,,2,1,3.\n", "line 6: found '2' behind 8 fields"),
         ("DMIG,KAAX,0,6,2", "DMIG,KAAX,0,6,4", "matrix KAAX is complex"),
         ("DMIG,KAAX,0,6,2", "DMIG,KAAX,0,2,2", "matrix KAAX is rectangular"),
         ("DMIG,KAAX,0,6,2", "DMIG,KAAX,0,7,2", "form 7"),
@@ -105,6 +115,10 @@ def test_places_from_a_whole_deck(tmp_path: Path) -> None:
         ("GRID,2,", "GRID,22,", r"1 of its nodes have no coordinates in bar\.pch: 2"),
         ("GRID,2,,0.,3.,0.", "GRID,2,5,0.,3.,0.", "coordinate system 5 is not among"),
         ("GRID,2,,0.,3.,0.", "GRID,2,,0.,3.,0.\nGRID,2,,0.,4.,0.", "2 stands there twice"),
+        ("GRID,2,", "SPOINT,8\nGRID,2,", r"row 7\.0 belongs to no SPOINT entry"),
+        ("GRID,2,", "GRID,7,,0.,0.,0.\nGRID,2,", r"row 7\.0 belongs to no SPOINT entry"),
+        ("GRID,2,", "$ prs-model units m-N\nGRID,2,", r"comment '\$ prs-model units m-N' is damaged: found 'm-N'"),
+        ("GRID,2,", '$ prs-model point 2 = "a" "\nGRID,2,', r"comment '\$ prs-model point 2 = .*is damaged"),
         ("GRID,2,", "INCLUDE 'more.bdf'\nGRID,2,", "INCLUDE is not followed"),
         ("GRID,2,", "j\nGRID,2,", "found 'j', expected a bulk data entry"),
     ],
@@ -116,8 +130,14 @@ def test_what_is_wrong_is_said(tmp_path: Path, old: str, new: str, said: str) ->
 
 
 def test_a_name_that_is_not_there(tmp_path: Path) -> None:
-    with pytest.raises(prs.PartFileError, match=r"unknown matrix 'KAA'.*known: KAAX, MAAX.*options 'stiffness'"):
+    with pytest.raises(prs.PartFileError, match=r"no stiffness matrix KAA, only KAAX, MAAX: .* option 'stiffness'"):
         punch(tmp_path, BAR, stiffness="KAA")
+
+
+def test_what_only_looks_like_something_else(tmp_path: Path) -> None:
+    """A comment begins no bulk data, and the number of columns counts for form 9 only."""
+    text = "$ after BEGIN BULK\n" + BAR.replace("0,6,2,0,,,3", "0,6,2,0,,,0")
+    assert np.array_equal(punch(tmp_path, text).stiffness, punch(tmp_path, BAR).stiffness)
 
 
 def test_a_continuation_of_another_width(tmp_path: Path) -> None:

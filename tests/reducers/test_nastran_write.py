@@ -131,6 +131,38 @@ def test_damage_that_no_format_shows(tmp_path: Path) -> None:
     prs.read_part("nastran", path, units=SI)
 
 
+@pytest.mark.parametrize("suffix", [".op4", ".pch"])
+def test_files_say_their_units_and_that_the_part_is_held(tmp_path: Path, suffix: str) -> None:
+    path = tmp_path / f"part{suffix}"
+    element = replace(plain_element(), grounded=True)
+    write(element, path, MM)
+    assert "$ held to the ground: say 'grounded: true'" in path.with_suffix(".pch").read_text()
+    found = prs.read_part("nastran", path)
+    assert np.allclose(found.positions, element.positions, rtol=1e-14)
+    with pytest.raises(prs.PartFileError, match=r"part\.pch: is in mm-N-tonne-s, and 'units' says m-N-kg-s"):
+        prs.read_part("nastran", path, units=SI)
+
+
+def test_companions_in_other_units(tmp_path: Path) -> None:
+    write(plain_element(), tmp_path / "part.op4", MM)
+    write(plain_element(), tmp_path / "other.op4", SI)
+    with pytest.raises(prs.PartFileError, match=r"other\.asm: is in m-N-kg-s, and part\.pch says mm-N-tonne-s"):
+        prs.read_part("nastran", tmp_path / "part.op4", asm="other.asm")
+
+
+def test_an_op4_does_not_replace_what_is_no_companion(tmp_path: Path) -> None:
+    write(plain_element(), tmp_path / "part.pch")
+    punched = (tmp_path / "part.pch").read_bytes()
+    for _ in range(2):
+        with pytest.raises(prs.PartFileError, match=r"part\.pch: would be replaced, but is no companion of part\.op4"):
+            write(plain_element(), tmp_path / "part.op4")
+        assert (tmp_path / "part.pch").read_bytes() == punched
+        (tmp_path / "part.op4").touch()  # of another export
+    write(plain_element(), tmp_path / "again.op4")
+    (tmp_path / "again.op4").unlink()
+    write(plain_element(), tmp_path / "again.op4")
+
+
 def test_a_punch_does_not_replace_a_companion(tmp_path: Path) -> None:
     write(plain_element(), tmp_path / "part.op4")
     with pytest.raises(prs.PartFileError, match=r"would replace the companion of part\.op4"):

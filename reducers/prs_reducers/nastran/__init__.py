@@ -17,8 +17,9 @@ from prs_model.reduction import SuperElement
 
 from .apart import EXTRA, LIST_OP4, NEEDS
 from .extdb import external, is_external, read_extdb
-from .matop4 import read_matop4
+from .matop4 import check_beginning, read_matop4
 from .nas2cam import Superelement, read_nas2cam, superelements
+from .notes import notes_of, system
 from .punch import punch_matrices, read_punch
 
 __all__ = ["NastranOptions", "NastranReducer", "Superelement", "matrices", "superelements"]
@@ -37,8 +38,8 @@ class NastranOptions(Section):
     nas2cam form, else that of the same stem. superelement: which one of such an assembly (0 is the residual).
     grids: bulk data file with the GRID and CORD2 entries of a punch that has none, or of an OP2 export.
     stiffness, mass: names of the matrices, else KXX, MXX (.op4), KAAX, MAAX (punch), MATK, MATM (.op2).
-    modes: whether the modal coordinates are what Craig-Bampton promises, mass-normalised and not coupled elastically to
-    the points, which is then checked; say 'other' where a component mode run had free points (CSET, BNDFREE).
+    modal_basis: whether the modal coordinates are what Craig-Bampton promises, mass-normalised and not coupled
+    elastically to the points, which is then checked; say 'other' where a run had free points (CSET, BNDFREE).
     full: the matrices are those of the whole model, as PARAM,EXTOUT,DMIGPCH writes without ASET; it is reduced here.
     """
 
@@ -49,17 +50,19 @@ class NastranOptions(Section):
     grids: str | None = None
     stiffness: str | None = None
     mass: str | None = None
-    modes: Literal["fixed-interface", "other"] = "fixed-interface"
+    modal_basis: Literal["fixed-interface", "other"] = "fixed-interface"
     full: bool = False
 
 
 class NastranReducer(Reducer[NastranOptions]):
+    """Nastran's files do not say their units; those that this program wrote do, in a comment."""
+
     description: ClassVar[str] = (
         "Nastran superelement: EXTSEOUT .op4 or .op2, nas2cam .op2, DMIG punch (also OptiStruct)"
     )
     Options: ClassVar[type[Section]] = NastranOptions
     gives = "either"
-    units = "asked"
+    units = "optional"
     writes = (".op4", ".pch")
 
     def read(self, part: PartRequest[NastranOptions]) -> FiniteElementModel | SuperElement:
@@ -67,16 +70,18 @@ class NastranReducer(Reducer[NastranOptions]):
 
         Raises PartFileError or MissingExtraError.
         """
+        _check_source(part)
+        units = _units(part)
         matrices, table, turned = _read(part)
         said = {"output systems": turned} if turned else {}
         if part.options.full:
-            return full_model(matrices, _with_rows(table, matrices), part.file_units, provenance=said)
+            return full_model(matrices, _with_rows(table, matrices), units, provenance=said)
         if len(matrices.nodes) > MOST_ROWS and not np.any(matrices.is_mode):
             found = f"it has {len(matrices.nodes)} rows and no modal coordinates"
             raise PartFileError(part.path, f"{found}, like a whole model: say 'full: true' to have it reduced here")
-        modal = part.options.modes == "fixed-interface" and bool(np.any(matrices.is_mode))
+        modal = part.options.modal_basis == "fixed-interface" and bool(np.any(matrices.is_mode))
         modes = "fixed-interface" if modal else ""
-        return super_element(matrices, table, part.file_units, modes=modes, provenance=said)
+        return super_element(matrices, table, units, modes=modes, provenance=said)
 
     def files(self, part: PartRequest[NastranOptions]) -> tuple[Path, ...]:
         """The source and its companions."""
@@ -95,21 +100,23 @@ class NastranReducer(Reducer[NastranOptions]):
 
 
 def matrices(path: Path | str) -> dict[str, tuple[int, int]]:
-    """Rows and columns of every matrix in an .op4 file, a DMIG punch, or an .op2 file with DMIG data blocks, by name.
+    """Rows and columns of every matrix in an .op4 file, a DMIG punch, or an .op2 file, by name.
 
-    Of DMIG, rows and columns that have entries are counted. Raises PartFileError or MissingExtraError.
+    Of DMIG, rows and columns that have entries are counted. Of a nas2cam assembly there are a stiffness and a mass of
+    each superelement, such as ``KAA 101``. Raises PartFileError or MissingExtraError.
     """
     path = Path(path)
     if _suffix(path) == OP4:
         sizes = read_apart(LIST_OP4, path, extra=EXTRA, needs=NEEDS)
         return {name: (int(size[0]), int(size[1])) for name, size in sizes.items()}
+    if _suffix(path) == OP2 and not is_external(path):
+        return {f"{name} {each.number}": (each.size,) * 2 for each in superelements(path) for name in ("KAA", "MAA")}
     found = external(path).matrices if _suffix(path) == OP2 else punch_matrices(path)
     return {name: matrix.shape for name, matrix in found.items()}
 
 
 def _read(part: PartRequest[NastranOptions]) -> tuple[LabelledMatrices, NodeTable, str]:
     suffix, options = _suffix(part.path), part.options
-    _check_options(part, suffix)
     names = options.stiffness or NAMES[suffix][0], options.mass or NAMES[suffix][1]
     grids = next(iter(_grids(part)), None)
     if suffix == OP4:
@@ -136,10 +143,34 @@ def _suffix(path: Path) -> str:
     return suffix
 
 
-def _check_options(part: PartRequest[NastranOptions], suffix: str) -> None:
+def _check_source(part: PartRequest[NastranOptions]) -> None:
+    """Raises PartFileError for a file that is not there or no part of its own, and for options of other files."""
+    suffix = _suffix(part.path)
+    if suffix == OP4:
+        check_beginning(part.path)
     for name in ("asm", "pch", "op4", "superelement", "grids"):
         if getattr(part.options, name) is not None and name not in TAKEN[suffix]:
             raise PartFileError(part.path, f"option '{name}' says nothing of a {suffix} file: leave it out")
+
+
+def _units(part: PartRequest[NastranOptions]) -> Units:
+    """What the request says, or a file that this program wrote. Raises PartFileError when they differ, or none says."""
+    units, sayer = part.units, "'units'"
+    for path in _texts(part):
+        written = notes_of(path).units
+        if units is not None and written is not None and units != written:
+            raise PartFileError(path, f"is in {system(written)}, and {sayer} says {system(units)}: correct one of them")
+        if units is None and written is not None:
+            units, sayer = written, path.name
+    return part.file_units if units is None else units
+
+
+def _texts(part: PartRequest[NastranOptions]) -> tuple[Path, ...]:
+    """The files that are bulk data. Raises PartFileError."""
+    suffix = _suffix(part.path)
+    if suffix == OP4:
+        return _present(part)
+    return _grids(part) if suffix == OP2 else (part.path, *_grids(part))
 
 
 def _beside(part: PartRequest[NastranOptions], option: str | None, suffix: str) -> Path:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .fortran import Tokens, check_op4, op2_blocks
+from .fortran import Tokens, check_op4, check_op4_text, op2_blocks
 
 EXTRA, NEEDS = ("pyyeti", "nastran"), "pyyeti.nastran"
 READ_OP4, LIST_OP4, READ_NAS2CAM = (f"{__name__}:{name}" for name in ("read_op4", "list_op4", "read_nas2cam"))
@@ -66,6 +66,8 @@ def _checked_op4(path: Path) -> Any:
     data = path.read_bytes()
     if b"\0" in data[:64]:
         check_op4(data)
+    else:
+        check_op4_text(data)
     warnings.simplefilter("error", RuntimeWarning)  # so pyyeti tells of a file that ends too early
     from pyyeti.nastran import op4
 

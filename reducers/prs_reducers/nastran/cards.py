@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 import math
 import re
 from collections.abc import Iterator
@@ -14,10 +12,10 @@ from prs_model.errors import PartFileError, short
 from prs_model.part_files import read_text
 from prs_model.part_files.text import number
 
+from .notes import check_sum
+
 NAME = re.compile(r"[A-Z][A-Z0-9]{2,7}\*?")  # no bulk data entry has a shorter name
-SIGNED = "$ Written by prs-model, with a sum of its lines at the end"
-SUM = re.compile(r"^\$ prs-model sum ([0-9a-f]{16})\s*$", re.MULTILINE)
-NOTE = re.compile(r'^\$ prs-model point (\d+) = (".*")\s*$', re.MULTILINE)
+BULK = re.compile(r"^[ \t]*BEGIN[ \t]+BULK\b", re.MULTILINE | re.IGNORECASE)
 WIDTHS = {"small": 8, "large": 16}
 BLANK = ""
 
@@ -69,7 +67,7 @@ def read_cards(path: Path) -> list[Card]:
     that this program wrote, also where it is not as it was written.
     """
     text = read_text(path)
-    _check_sum(path, text)
+    check_sum(path, text)
     cards: list[Card] = []
     for line, name, fields in _entries(path, text):
         if name == "BEGIN" and fields == ("BULK",):
@@ -86,32 +84,9 @@ def read_cards(path: Path) -> list[Card]:
     return [card for card in cards if card.name != "BEGIN"]
 
 
-def names_of_points(path: Path) -> dict[int, str]:
-    """Names that the writer left in comments, by number."""
-    return {int(number_): str(json.loads(name)) for number_, name in NOTE.findall(read_text(path))}
-
-
-def signed(lines: list[str]) -> bytes:
-    """Lines as a file whose last line is their sum, by which damage is noticed that no format shows."""
-    lines = [SIGNED, *lines]
-    return "\n".join([*lines, f"$ prs-model sum {_sum(lines)}", ""]).encode("ascii")
-
-
-def _sum(lines: list[str]) -> str:
-    return hashlib.sha256("\n".join(lines).encode("latin-1")).hexdigest()[:16]
-
-
-def _check_sum(path: Path, text: str) -> None:
-    found = SUM.search(text)
-    whole = not text[found.end() :].strip() and _sum(text[: found.start()].splitlines()) == found[1] if found else False
-    if (found or SIGNED in text) and not whole:
-        hint = "it is damaged, or was edited (remove its first and last line if that was meant)"
-        raise PartFileError(path, f"is not as it was written: {hint}")
-
-
 def _entries(path: Path, text: str) -> Iterator[tuple[int, str | None, tuple[str, ...]]]:
     """Line, name (None of a continuation) and fields of every line that holds any."""
-    started = "BEGIN BULK" not in text.upper()
+    started = BULK.search(text) is None
     kind = ""
     for line, raw in enumerate(text.splitlines(), 1):
         content = raw.split("$")[0].rstrip().expandtabs(8)
@@ -122,11 +97,11 @@ def _entries(path: Path, text: str) -> Iterator[tuple[int, str | None, tuple[str
         elif words and started:
             if content[0] not in " +*,":
                 kind = _kind(content)
-                yield line, _name(path, line, content, kind), _fields(content, kind)
+                yield line, _name(path, line, content, kind), _fields(path, line, content, kind)
             elif kind and _kind(content) != kind:
                 raise PartFileError(path, f"line {line}: a {_kind(content)}-field line continues a {kind}-field entry")
             else:
-                yield line, None, _fields(content, _kind(content))
+                yield line, None, _fields(path, line, content, _kind(content))
 
 
 def _name(path: Path, line: int, content: str, kind: str) -> str:
@@ -144,14 +119,20 @@ def _kind(content: str) -> str:
     return "large" if content[0] == "*" or content[:8].rstrip().endswith("*") else "small"
 
 
-def _fields(content: str, kind: str) -> tuple[str, ...]:
+def _fields(path: Path, line: int, content: str, kind: str) -> tuple[str, ...]:
     if kind == "free":
-        found = content.split(",")
-        per_line = 4 if "*" in found[0] else 8
-        return tuple(_padded([each.strip() for each in found[1:]], per_line))
+        return _free_fields(path, line, content)
     width = WIDTHS[kind]
     return tuple(content[at : at + width].strip() for at in range(8, 72, width))
 
 
-def _padded(fields: list[str], size: int) -> list[str]:
-    return (fields + [BLANK] * size)[:size]
+def _free_fields(path: Path, line: int, content: str) -> tuple[str, ...]:
+    """Eight fields, or four of a ``*`` line; behind them nothing but the mark of a continuation."""
+    name, *found = (each.strip() for each in content.split(","))
+    per_line = 4 if "*" in name else 8
+    beyond = [each for each in found[per_line:] if each]
+    if beyond and not (found[per_line].startswith(("+", "*")) and len(beyond) == 1):
+        raise PartFileError(
+            path, f"line {line}: found '{short(beyond[0], 20)}' behind {per_line} fields, expected a line of its own"
+        )
+    return tuple((found + [BLANK] * per_line)[:per_line])

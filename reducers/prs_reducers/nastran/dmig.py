@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -11,7 +11,6 @@ from scipy.sparse import coo_array, csr_array
 
 from prs_model.errors import PartFileError
 from prs_model.part_files import MODE, LabelledMatrices
-from prs_model.plugins import unknown
 
 from .cards import BLANK, Card
 
@@ -25,7 +24,9 @@ Dof = tuple[int, int]
 
 @dataclass
 class Dmig:
-    """One matrix as it is stored. kind: 1 or 2 real, 3 or 4 complex. columns: as stated, where it is stated."""
+    """One matrix as it is stored. kind: 1 or 2 real, 3 or 4 complex. columns: as stated, None or 0 where not (only
+    form 9 has to).
+    """
 
     source: Path
     name: str
@@ -74,7 +75,7 @@ class Dmig:
         """Raises PartFileError for an empty matrix, or one of more columns than stated."""
         if not self.entries:
             raise self.wrong("has no entries: the file is truncated, or the run wrote none")
-        if self.columns is not None and len(self._columns()) > self.columns:
+        if self.columns and len(self._columns()) > self.columns:
             raise self.wrong(f"has {len(self._columns())} columns, but states {self.columns}")
 
     def square(self, dofs: list[Dof]) -> csr_array:
@@ -133,25 +134,31 @@ def _groups(card: Card) -> list[int]:
 
 
 def labelled(
-    matrices: dict[str, Dmig], stiffness: str, mass: str, names: dict[int, str], path: Path
-) -> LabelledMatrices:
-    """Stiffness and mass on all points that either names; scalar points are modes. Raises PartFileError."""
-    pair = [_named(matrices, name, path) for name in (stiffness, mass)]
+    matrices: dict[str, Dmig], stiffness: str, mass: str, names: Mapping[int, str], path: Path
+) -> tuple[LabelledMatrices, list[Dof]]:
+    """Stiffness and mass on all points that either names, scalar points as modes; and what their rows are.
+
+    Raises PartFileError.
+    """
+    pair = [_named(matrices, kind, name.upper(), path) for kind, name in (("stiffness", stiffness), ("mass", mass))]
     dofs = sorted(set(pair[0].rows()) | set(pair[1].rows()))
-    return LabelledMatrices(
+    found = LabelledMatrices(
         source=path,
         stiffness=pair[0].square(dofs),
         mass=pair[1].square(dofs),
         nodes=np.array([names.get(point, str(point)) for point, _ in dofs], dtype=str),
         components=np.array([component - 1 if component else MODE for _, component in dofs], dtype=np.int64),
     )
+    return found, dofs
 
 
-def _named(matrices: dict[str, Dmig], name: str, path: Path) -> Dmig:
-    if name.upper() not in matrices:
-        missing = unknown("matrix", name.upper(), list(matrices))
-        raise PartFileError(path, f"{missing}; say which with options 'stiffness' and 'mass'")
-    return matrices[name.upper()]
+def _named(matrices: dict[str, Dmig], kind: str, name: str, path: Path) -> Dmig:
+    if name not in matrices:
+        listed = ", ".join(matrices)
+        raise PartFileError(
+            path, f"it has no {kind} matrix {name}, only {listed}: export it too, or name it with option '{kind}'"
+        )
+    return matrices[name]
 
 
 def _said(dof: Dof) -> str:

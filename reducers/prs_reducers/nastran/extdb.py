@@ -10,12 +10,13 @@ What the layout is taken from, and how far it was checked:
 - That XSOP2DIR names the EXTDB blocks in their order (GEOM1EX, .., MATK, MATM) is taken from pyNastran's comments on
   a Simcenter 2019.2 file. **No such file was at hand**: one that is laid out otherwise is refused, not guessed at.
 
-Coordinates in single precision are exact for few numbers only, and the physics gate refuses the part then: name the
-bulk data file with option ``grids``, or export MATOP4.
+Coordinates in single precision have seven digits only, which the physics gate lets pass and a warning names: the bulk
+data file has them all (option ``grids``), and so has MATOP4.
 """
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -25,11 +26,14 @@ import numpy as np
 
 from prs_model.errors import PartFileError
 from prs_model.part_files import LabelledMatrices, NodeTable
+from prs_model.part_files.text import file_access
 
 from .dmig import Dmig, labelled
 from .fortran import Block, Tokens, op2_blocks
-from .geometry import Grid, System, node_table
+from .geometry import Grid, System, check_points, node_table
 from .punch import grid_table
+
+logger = logging.getLogger("prs_model")
 
 T = TypeVar("T", Grid, System)
 
@@ -44,16 +48,21 @@ SYSTEM_KEYS = {
     (2001, 20, 2220009): (2, "d"),
     (2201, 22, 2220010): (3, "d"),
 }
+END = [-1, -1]  # of a column, and of all columns
 INSTEAD = "export EXTSEOUT(.., MATOP4) instead"
 
 
 @dataclass
 class External:
-    """What is found in the data blocks: matrices by the directory's name, points and coordinate systems."""
+    """What is found in the data blocks: matrices by the directory's name, points and coordinate systems.
+
+    coarse: points have places of single precision.
+    """
 
     matrices: dict[str, Dmig] = field(default_factory=dict)
     grids: dict[int, Grid] = field(default_factory=dict)
     systems: dict[int, System] = field(default_factory=dict)
+    coarse: bool = False
 
 
 def is_external(path: Path) -> bool:
@@ -67,11 +76,15 @@ def read_extdb(path: Path, grids: Path | None, stiffness: str, mass: str) -> tup
     instead of those in the file. Raises PartFileError.
     """
     found = external(path)
-    matrices = labelled(found.matrices, stiffness, mass, {}, path)
+    matrices, rows = labelled(found.matrices, stiffness, mass, {}, path)
     if grids is not None:
-        return matrices, grid_table(path, [], grids, {})
+        return matrices, grid_table(path, [], grids, {}, rows)
     if not found.grids:
         raise PartFileError(path, f"it has no GRID record: name a bulk data file with option 'grids', or {INSTEAD}")
+    check_points(path, rows, found.grids, None)
+    if found.coarse:
+        hint = "where that is too coarse, name the bulk data file with option 'grids'"
+        logger.warning("%s: its points have places of seven digits (single precision): %s", path.name, hint)
     return matrices, node_table(path, found.grids, found.systems)
 
 
@@ -88,6 +101,7 @@ def external(path: Path) -> External:
                 found.matrices[name] = _dmig(path, name, record, tokens.order)
             elif key in GRID_KEYS:
                 _merge(path, found.grids, _grids(path, record[12:], tokens.order, GRID_KEYS[key]))
+                found.coarse |= GRID_KEYS[key] == "f"
             elif key in SYSTEM_KEYS:
                 _merge(path, found.systems, _systems(path, record[12:], tokens.order, *SYSTEM_KEYS[key]))
     if not found.matrices:
@@ -104,10 +118,9 @@ def _merge(path: Path, found: dict[int, T], more: dict[int, T]) -> None:
 
 def _blocks(path: Path) -> tuple[Tokens, list[Block]]:
     try:
-        tokens = Tokens(path.read_bytes())
+        with file_access(path, "read"):
+            tokens = Tokens(path.read_bytes())
         return tokens, list(op2_blocks(tokens))
-    except OSError as error:
-        raise PartFileError(path, f"cannot be read: {error.strerror or error}") from error
     except ValueError as error:
         raise PartFileError(path, f"is no whole OP2 file: {error}") from error
 
@@ -140,18 +153,20 @@ def _dmig(path: Path, name: str, record: bytes, order: str) -> Dmig:
         raise PartFileError(path, f"the DMIG record of {name} is {len(words)} words long: {INSTEAD}")
     matrix = Dmig(path, name, form=words[6], kind=words[7], columns=words[11])
     number = np.dtype({1: f"{order}f4", 2: f"{order}f8", 3: f"{order}c8", 4: f"{order}c16"}[matrix.kind])
-    at, end = 12, len(words)
-    while words[at : at + 2] != [-1, -1] and at < end:
+    at, step, last = 12, 2 + number.itemsize // 4, len(words) - 2
+    while at < last:
         column, at = (words[at], words[at + 1]), at + 2
-        while words[at : at + 2] != [-1, -1]:
-            if at + 2 + number.itemsize // 4 > end:
+        while words[at : at + 2] != END:
+            if at + step > last:
                 raise PartFileError(
                     path, f"the DMIG record of {name} ends within column {column[0]}.{column[1]}: {INSTEAD}"
                 )
             value = np.frombuffer(record, number, 1, 4 * (at + 2))[0]
             matrix.put((words[at], words[at + 1]), column, complex(value))
-            at += 2 + number.itemsize // 4
+            at += step
         at += 2
+    if words[at:] != END:
+        raise PartFileError(path, f"the DMIG record of {name} does not end with its end mark: {INSTEAD}")
     matrix.check()
     return matrix
 

@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
+
+from prs_model.errors import short
+
+INTEGER = re.compile(r" *-?[0-9]+ *")
 
 
 @dataclass(frozen=True)
@@ -61,6 +67,17 @@ def check_op4(data: bytes) -> None:
         if columns < 0 or not 1 <= kind <= 4:
             raise ValueError(f"matrix {name} has {columns} columns of type {kind}: damaged")
         _check_columns(stream, name, columns, abs(rows), order, word)
+
+
+def check_op4_text(data: bytes) -> None:
+    """Raises ValueError unless text begins as an OP4 matrix does: columns, rows, form, type, name."""
+    line = data.splitlines()[0].decode("latin-1").rstrip() if data.strip() else ""
+    width = 16 if line.endswith("|I16") else 8
+    ends = (0, width, 2 * width, 2 * width + 8, 2 * width + 16)
+    if not all(INTEGER.fullmatch(line[start:end]) for start, end in pairwise(ends)):
+        raise ValueError(
+            f"it begins with '{short(line, 40)}', expected a matrix's columns, rows, form, type and name: no OP4"
+        )
 
 
 def _check_columns(stream: Iterator[memoryview], name: str, columns: int, rows: int, order: str, word: int) -> None:

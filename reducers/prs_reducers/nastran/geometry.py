@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
@@ -13,7 +13,7 @@ from prs_model.arrays import FloatArray
 from prs_model.errors import PartFileError
 from prs_model.part_files import NodeTable
 
-from .cards import Card
+from .cards import BLANK, Card
 
 T = TypeVar("T")
 
@@ -69,6 +69,43 @@ def systems_of(cards: Iterable[Card]) -> dict[int, System]:
             points = tuple((at[i], at[i + 1], at[i + 2]) for i in (0, 3, 6))
             _put(systems, card, System(SYSTEMS[card.name], card.integer(1, 0), points))
     return systems
+
+
+def scalar_points(cards: Iterable[Card]) -> frozenset[int]:
+    """Scalar points of ``SPOINT, 1, 2, 3`` and ``SPOINT, 1, THRU, 3``. Raises PartFileError."""
+    found: set[int] = set()
+    for card in cards:
+        if card.name == "SPOINT":
+            is_range = card.text(1).upper() == "THRU"
+            filled = [index for index, text in enumerate(card.fields) if text != BLANK]
+            found.update(
+                points_between(card, card.integer(0), card.integer(2)) if is_range else map(card.integer, filled)
+            )
+    return frozenset(found)
+
+
+def points_between(card: Card, first: int, last: int) -> range:
+    """Points of ``first, THRU, last``. Raises PartFileError."""
+    if not 0 < first <= last < first + 10**6:
+        raise card.wrong(f"found {first} THRU {last}, expected a rising range")
+    return range(first, last + 1)
+
+
+def check_points(
+    source: Path, rows: Iterable[tuple[int, int]], grids: Collection[int], scalars: Collection[int] | None
+) -> None:
+    """Raises PartFileError for a row of a grid point without a component, or of a scalar point with one.
+
+    scalars: None where the files do not list them.
+    """
+    for point, component in rows:
+        if component == 0 and (point in grids or (scalars is not None and point not in scalars)):
+            kind = "SPOINT"
+        elif component and scalars is not None and point in scalars:
+            kind = "GRID"
+        else:
+            continue
+        raise PartFileError(source, f"row {point}.{component} belongs to no {kind} entry: a line is missing or damaged")
 
 
 def _put(found: dict[int, T], card: Card, entry: T) -> None:

@@ -12,12 +12,16 @@ import numpy as np
 from prs_model.arrays import FloatArray
 from prs_model.errors import PartFileError
 from prs_model.part_files import MODE, LabelledMatrices, NodeTable, read_apart
+from prs_model.part_files.text import file_access
 
 from .apart import EXTRA, NEEDS, READ_OP4
-from .cards import BLANK, Card, names_of_points, read_cards
+from .cards import BLANK, Card, read_cards
 from .dmig import Dof
-from .geometry import Grid, System, grids_of, node_table, systems_of
+from .fortran import check_op4_text
+from .geometry import Grid, System, check_points, grids_of, node_table, points_between, scalar_points, systems_of
+from .notes import notes_of
 
+ASSEMBLY = b"SE_START"  # the name of its first matrix
 COMPONENTS = re.compile(r"0|(?!.*(.).*\1)[1-6]{1,6}")  # none twice
 OTHER_SETS = ("ASET1", "BSET", "BSET1", "BNDFIX", "BNDFIX1", "BNDFREE", "BNDFREE1", "CSET", "CSET1")
 
@@ -29,7 +33,6 @@ class Companion:
     path: Path
     grids: Mapping[int, Grid]
     systems: Mapping[int, System]
-    scalars: frozenset[int]
     points: tuple[int, ...]
     rows: tuple[Dof, ...]
     names: Mapping[int, str]
@@ -61,6 +64,20 @@ def read_matop4(
     return matrices, node_table(first.path, first.grids, first.systems, first.names), turned
 
 
+def check_beginning(path: Path) -> None:
+    """Raises PartFileError for text that is no OP4, and for the .op4 of a nas2cam assembly, of several parts."""
+    with file_access(path, "read"), path.open("rb") as file:
+        head = file.read(128)
+    if ASSEMBLY in head:
+        source = path.with_suffix(".op2").name
+        raise PartFileError(path, f"it is the .op4 of a nas2cam assembly: give {source} as the source, which finds it")
+    if b"\0" not in head and head.strip():
+        try:
+            check_op4_text(head)
+        except ValueError as error:
+            raise PartFileError(path, str(error)) from error
+
+
 def _check_size(path: Path, name: str, matrix: FloatArray, companion: Companion) -> None:
     n, rows = len(matrix), len(companion.rows)
     if n == rows:
@@ -76,7 +93,6 @@ def _check_size(path: Path, name: str, matrix: FloatArray, companion: Companion)
 def _companion(path: Path) -> Companion:
     cards = read_cards(path)
     grids = grids_of(cards)
-    scalars = frozenset(point for card in cards if card.name == "SPOINT" for point in _listed(card))
     extrn = [card for card in cards if card.name == "EXTRN"]
     seconct = [card for card in cards if card.name == "SECONCT"]
     if extrn:
@@ -87,13 +103,8 @@ def _companion(path: Path) -> Companion:
     else:
         raise PartFileError(path, "it has neither EXTRN nor SECONCT entries, which name the rows: export it again")
     points = tuple(dict.fromkeys(point for point, _ in rows))
-    for point, component in rows:
-        if (point in grids) == (component == 0) or (component == 0) != (point in scalars):
-            kind = "GRID" if component else "SPOINT"
-            raise PartFileError(
-                path, f"row {point}.{component} belongs to no {kind} entry: a line is missing or damaged"
-            )
-    return Companion(path, grids, systems_of(cards), scalars, points, rows, names_of_points(path))
+    check_points(path, rows, grids, scalar_points(cards))
+    return Companion(path, grids, systems_of(cards), points, rows, notes_of(path).names)
 
 
 def _all_dofs(point: int, grids: Mapping[int, Grid]) -> list[Dof]:
@@ -125,22 +136,9 @@ def _connected(card: Card) -> list[int]:
         if len(places) < size:
             raise card.wrong("its last point is not paired: a line is missing or damaged")
         start = card.integer(places[0])
-        found.extend(_range(card, start, card.integer(places[2])) if in_ranges else [start])
+        found.extend(points_between(card, start, card.integer(places[2])) if in_ranges else [start])
         del places[:size]
     return found
-
-
-def _listed(card: Card) -> list[int]:
-    """Points of ``1, 2, 3`` or ``1, THRU, 3``."""
-    if card.text(1).upper() == "THRU":
-        return _range(card, card.integer(0), card.integer(2))
-    return [card.integer(index) for index, text in enumerate(card.fields) if text != BLANK]
-
-
-def _range(card: Card, first: int, last: int) -> list[int]:
-    if not 0 < first <= last < first + 10**6:
-        raise card.wrong(f"found {first} THRU {last}, expected a rising range")
-    return list(range(first, last + 1))
 
 
 def _check_retained(path: Path, cards: list[Card], rows: tuple[Dof, ...]) -> None:

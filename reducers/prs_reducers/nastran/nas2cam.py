@@ -73,6 +73,9 @@ def read_nas2cam(op2: Path, op4: Path, wanted: int | None) -> tuple[LabelledMatr
 
 
 def _arrays(op2: Path, op4: Path) -> Arrays:
+    if op2.is_file() and not op4.is_file():
+        taken = f"it has no DMIG data blocks; of a nas2cam assembly there is an .op4 too, but no {op4.name} is there"
+        raise PartFileError(op2, f"{taken}: name it with option 'op4', or export EXTSEOUT(.., MATOP4) instead")
     return read_apart(READ_NAS2CAM, op2, op4, extra=EXTRA, needs=NEEDS)
 
 

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from prs_model.errors import PartFileError
 from prs_model.part_files import LabelledMatrices, NodeTable
 
-from .cards import Card, names_of_points, read_cards
-from .dmig import Dmig, dmig_matrices, labelled
-from .geometry import grids_of, node_table, systems_of
+from .cards import Card, read_cards
+from .dmig import Dmig, Dof, dmig_matrices, labelled
+from .geometry import check_points, grids_of, node_table, scalar_points, systems_of
+from .notes import notes_of
 
 
 def punch_matrices(path: Path) -> dict[str, Dmig]:
@@ -25,17 +27,24 @@ def read_punch(path: Path, grids: Path | None, stiffness: str, mass: str) -> tup
     """
     cards = read_cards(path)
     matrices = _matrices(path, cards)
-    names = names_of_points(path)
-    return labelled(matrices, stiffness, mass, names, path), grid_table(path, cards, grids, names)
+    names = notes_of(path).names
+    found, rows = labelled(matrices, stiffness, mass, names, path)
+    return found, grid_table(path, cards, grids, names, rows)
 
 
-def grid_table(path: Path, cards: list[Card], grids: Path | None, names: dict[int, str]) -> NodeTable:
-    """The grid points among these entries, or of the file `grids`. Raises PartFileError when there are none."""
+def grid_table(
+    path: Path, cards: list[Card], grids: Path | None, names: Mapping[int, str], rows: Iterable[Dof]
+) -> NodeTable:
+    """The grid points among these entries, or of the file `grids`, which both say what kind of point each row is of.
+
+    Raises PartFileError when there are none, or a row is of another kind.
+    """
     source, entries = (path, cards) if grids is None else (grids, read_cards(grids))
     found = grids_of(entries)
     if not found:
         hint = "name the bulk data file that has them with option 'grids'" if grids is None else "name another file"
         raise PartFileError(source, f"it has no GRID entries, so that its points have no places: {hint}")
+    check_points(source, rows, found, scalar_points(cards) | scalar_points(entries) or None)
     return node_table(source, found, systems_of(entries), names)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -11,11 +10,13 @@ import numpy as np
 
 from prs_model.description.units import Units
 from prs_model.errors import MissingExtraError, PartFileError
+from prs_model.part_files import read_text
+from prs_model.part_files.text import file_access
 from prs_model.reduction import SuperElement
 from prs_model.reduction.storage import whole
 
 from .apart import EXTRA
-from .cards import signed
+from .notes import SIGNED, note_lines, signed
 from .points import Points, components_of, pairs, points_of, scalars_of
 
 NUMBER = 101  # of the superelement, and of the Fortran unit that the assembly run reads it from
@@ -32,12 +33,14 @@ def write_matop4(element: SuperElement, path: Path, units: Units) -> None:
 
     The .asm is for the main bulk data of an assembly run, the .pch for its end. Coordinates have the 16 characters of a
     field. The matrices that Nastran expects beside them are there as 1x1 zeros, and VA as ones: no damping, loads or
-    data recovery. Raises PartFileError or MissingExtraError.
+    data recovery. Raises MissingExtraError, or PartFileError, also where it would replace another .asm or .pch.
     """
     points = points_of(element, path, units)
+    _check_companions(path)
     data = _op4(points)
+    head = note_lines(units, points.names, grounded=element.grounded)
     for suffix, lines in ((".asm", _assembly(points)), (".pch", _superelement(points))):
-        _write(path.with_suffix(suffix), signed([*_head(units, points), *lines]))
+        _write(path.with_suffix(suffix), signed([*head, *lines]))
     _write(path, data)
 
 
@@ -51,7 +54,7 @@ def write_punch(element: SuperElement, path: Path, units: Units) -> None:
             path, f"would replace the companion of {path.with_suffix('.op4').name}: choose another name"
         )
     points = points_of(element, path, units)
-    lines = [*_head(units, points), *_points(points)]
+    lines = [*note_lines(units, points.names, grounded=element.grounded), *_points(points)]
     for name, matrix in (("KAAX", points.stiffness), ("MAAX", points.mass)):
         lines += _dmig(name, points, (matrix + matrix.T) / 2.0)
     _write(path, signed(lines))
@@ -85,16 +88,25 @@ def _op4(points: Points) -> bytes:
 
 
 def _write(path: Path, data: bytes) -> None:
+    with file_access(path, "written"), whole(path) as file:
+        file.write(data)
+
+
+def _check_companions(path: Path) -> None:
+    """Raises PartFileError where an .asm or .pch that is there belongs to no .op4 of this name."""
+    for suffix, entry in ((".asm", "SECONCT"), (".pch", "EXTRN")):
+        file = path.with_suffix(suffix)
+        if file.exists() and not _is_companion(file, entry, path):
+            raise PartFileError(file, f"would be replaced, but is no companion of {path.name}: choose another name")
+
+
+def _is_companion(file: Path, entry: str, op4: Path) -> bool:
     try:
-        with whole(path) as file:
-            file.write(data)
-    except OSError as error:
-        raise PartFileError(path, f"cannot be written: {error.strerror or error}") from error
-
-
-def _head(units: Units, points: Points) -> list[str]:
-    named = [f"$ prs-model point {number} = {json.dumps(name)}" for number, name in points.names.items()]
-    return [f"$ Super-element in {units.length}, {units.force}, {units.mass}, s", *named]
+        text = read_text(file)
+    except PartFileError:
+        return False
+    names = {line[:8].split(",")[0].strip() for line in text.splitlines()}
+    return entry in names and not names & {"DMIG", "DMIG*"} and (op4.exists() or SIGNED in text)
 
 
 def _assembly(points: Points) -> list[str]:
