@@ -19,18 +19,18 @@ from prs_model.plugins import PartRequest, Reducer
 from .meshes.labelled_mesh import LabelledMesh
 from .meshes.mesh_agreement import missing_rows, sentence_of
 from .meshes.meshed_part import meshed_model
-from .meshes.part_mesh import mesh_files, read_part_mesh
+from .meshes.part_mesh import mesh_files, read_part_mesh, wrong_source
 from .tables.number_table import read_table, whole_numbers
+from .tables.user_element import OF_CALCULIX, is_user_element
 
-SUBSTRUCTURE = (
-    "output of *SUBSTRUCTURE GENERATE: CalculiX (2.20 at least) writes the stiffness of the retained nodes with all "
-    "others held there, not the condensed one, and no mass; use *FREQUENCY, SOLVER=MATRIXSTORAGE instead and name "
-    "the .sti file that it writes"
-)
+SUFFIXES = (".sti", ".mas", ".dof")
 
 
 class CalculixOptions(Section):
-    """mesh: the deck (.inp) or gmsh mesh (.msh) beside the source; by default ``<source>.inp``."""
+    """mesh: the deck (.inp) or gmsh mesh (.msh) beside the source; by default ``<source>.inp``.
+
+    A gmsh mesh does not say which motions are held: that only those have no rows is then not seen.
+    """
 
     mesh: str | None = None
 
@@ -51,10 +51,12 @@ class CalculixReducer(Reducer[CalculixOptions]):
         """
         stiffness, mass, dof, mesh = _paths(part)
         nodes, components = _labels(dof)
-        rows, columns, of_k = _triangle(stiffness, len(nodes))
-        mass_rows, mass_columns, of_m = _triangle(mass, len(nodes))
+        rows, columns, of_k = _triangle(stiffness, dof, len(nodes))
+        mass_rows, mass_columns, of_m = _triangle(mass, dof, len(nodes))
         if not (np.array_equal(rows, mass_rows) and np.array_equal(columns, mass_columns)):
-            raise PartFileError(mass, f"its entries are not at the places of those in {stiffness.name}: of another run")
+            raise PartFileError(
+                mass, f"its entries are not at the places of those in {stiffness.name}: of another job, or damaged"
+            )
         k, m = (_mirrored(len(nodes), rows, columns, values) for values in (of_k, of_m))
         labelled = read_part_mesh(mesh)
         _check_nodes(nodes, components, dof, labelled)
@@ -71,16 +73,23 @@ class CalculixReducer(Reducer[CalculixOptions]):
 def _paths(part: PartRequest[CalculixOptions]) -> tuple[Path, Path, Path, Path]:
     """Stiffness, mass, rows and mesh: companions are gzipped or not, whatever the source is."""
     source = part.path
-    if source.suffix == ".mtx":
-        raise PartFileError(source, f"expected .sti or .sti.gz; an .mtx file of CalculiX is {SUBSTRUCTURE}")
-    stem = source.name.removesuffix(".gz")
-    if stem == source.name and source.suffix not in (".sti", ".mas", ".dof"):
-        stem += ".sti"
-    if not stem.endswith((".sti", ".mas", ".dof")):
-        raise PartFileError(source, "expected .sti or .sti.gz, the stiffness that SOLVER=MATRIXSTORAGE writes")
-    stem = stem[:-4]
-    stiffness, mass, dof = (_companion(source, stem + suffix) for suffix in (".sti", ".mas", ".dof"))
+    stem = _stem(source)
+    stiffness, mass, dof = (_companion(source, stem + suffix) for suffix in SUFFIXES)
     return stiffness, mass, dof, source.parent / (part.options.mesh or f"{stem}.inp")
+
+
+def _stem(source: Path) -> str:
+    """The name without suffixes of one of the three files, gzipped or not, or as it stands of all of them."""
+    name = source.name.removesuffix(".gz")
+    if name.endswith(SUFFIXES):
+        return name[:-4]
+    if not source.is_file() and _companion(source, f"{name}.sti").is_file():
+        return name
+    if source.suffix == ".mtx" and source.is_file() and is_user_element(read_text(source)):
+        raise PartFileError(source, f"expected .sti or .sti.gz; this is {OF_CALCULIX}")
+    found = f"{source.suffix} is not read" if source.suffix else "there is no such file"
+    what = ".sti or .sti.gz, the stiffness that *FREQUENCY, SOLVER=MATRIXSTORAGE writes"
+    raise wrong_source(source, found, what, ("*.sti", "*.sti.gz"))
 
 
 def _companion(source: Path, name: str) -> Path:
@@ -103,17 +112,22 @@ def _labels(path: Path) -> tuple[IntArray, IntArray]:
     return nodes, components - 1
 
 
-def _triangle(path: Path, size: int) -> tuple[IntArray, IntArray, FloatArray]:
-    """Rows, columns and values of an upper triangle, which stands there column by column, each with its diagonal."""
+def _triangle(path: Path, dof: Path, size: int) -> tuple[IntArray, IntArray, FloatArray]:
+    """Rows, columns and values of an upper triangle, which stands there column by column, each with its diagonal.
+
+    size: the number of rows in `dof`.
+    """
     text = read_text(path)
-    if "*USER ELEMENT" in text[:1000]:
-        raise PartFileError(path, f"this is {SUBSTRUCTURE}")
+    if is_user_element(text):
+        raise PartFileError(path, f"this is {OF_CALCULIX}")
     table = read_table(text, path, 3)
     rows, columns = whole_numbers(table[:, :2], path, "row and column").T
     last = (int(rows[-1]), int(columns[-1]))
     if last != (size, size):
         raise PartFileError(
-            path, f"its last entry is {last[0]} {last[1]}, expected {size} {size}, as many as rows in .dof: truncated"
+            path,
+            f"its last entry is {last[0]} {last[1]}, expected {size} {size}, as many as {dof.name} has rows: one of "
+            "both is truncated, or of another job",
         )
     steps = np.diff(columns * (size + 1) + rows)
     ends = rows[np.append(np.diff(columns) > 0, True)]

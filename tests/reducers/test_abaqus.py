@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.linalg import block_diag, eigh
+from scipy.sparse import csr_array
 from scipy.spatial.transform import Rotation
 
 import prs_model as prs
 from prs_model.description.units import Units
 from prs_model.finite_elements import FiniteElementModel
 from prs_model.reduction import SuperElement
-from tests.meshes import box, steel
+from tests.meshes import STEEL, box, steel
 from tests.reducers.decks import write_deck, write_labelled, write_user_element
 from tests.superelements import DATA, needs_data, reference
 
@@ -22,6 +25,12 @@ MESH = box((0.4, 0.1, 0.06), (4, 1, 1))
 MODEL = steel(MESH)
 LABELS = 7 + 3 * np.random.default_rng(1).permutation(len(MESH.points))
 ENDS = {"root": {"set": "Nx0"}, "tip": {"set": "Nx1"}}
+FRAME = {
+    "nodes": {"root": (0.0, 0.0, 0.0), "tip": (0.6, 0.0, 0.0)},
+    "sections": {"bar": {"kind": "rectangle", "y": 0.02, "z": 0.03, "material": STEEL}},
+    "members": ({"between": ("root", "tip"), "section": "bar", "elements": 6},),
+}
+ORDER = [1, *range(3, 8), 2]  # its nodes along the bar: both ends come first
 # N/mm and t from N/m and kg
 STIFFNESS, MASS = MODEL.stiffness.toarray() / 1e3, MODEL.mass.toarray() / 1e3
 
@@ -165,6 +174,41 @@ def test_a_substructure_is_a_super_element(tmp_path):
     assert held.mass_properties().mass == pytest.approx(expected.mass, rel=1e-9)
 
 
+def test_a_mass_file_cut_short_is_seen_in_a_frame_of_beams_too(tmp_path):
+    """Nodes without rows in the mass file could be massless; those of beams are not."""
+    frame = prs.read_part("beam", options=FRAME)
+    assert isinstance(frame, FiniteElementModel)
+    labels = np.arange(1, len(frame.coordinates) + 1)
+    members = "".join(f"{i + 1}, {a}, {b}\n" for i, (a, b) in enumerate(pairwise(ORDER)))
+    points = [f"{label}, {x}, {y}, {z}\n" for label, (x, y, z) in zip(labels, frame.coordinates, strict=True)]
+    (tmp_path / "job.inp").write_text(f"*NODE\n{''.join(points)}*ELEMENT, TYPE=B31\n{members}")
+    write_labelled(tmp_path / "job_MASS1.mtx", frame.mass.toarray(), frame, labels)
+    source = write_labelled(tmp_path / "job_STIF1.mtx", frame.stiffness.toarray(), frame, labels)
+    assert read(source, "m-N-kg-s").mass_properties().mass == pytest.approx(7850.0 * 0.02 * 0.03 * 0.6, rel=1e-12)
+    mass = tmp_path / "job_MASS1.mtx"
+    lines = mass.read_text().splitlines(keepends=True)
+    mass.write_text("".join(lines[: len(lines) // 2]))
+    with pytest.raises(prs.PartFileError, match="rows of elements with mass have none, the first at node"):
+        read(source, "m-N-kg-s")
+
+
+def test_constraints_may_move_mass_along_one_axis(tmp_path):
+    """*EQUATION ties ux of two nodes: the mass of the one that follows then is part of the other's, along x."""
+    kept, gone = (int(MODEL.rows[node, 0]) for node in (0, 8))
+    follow = np.eye(MODEL.size)
+    follow[gone, gone], follow[gone, kept] = 0.0, 1.0
+    free = np.delete(np.arange(MODEL.size), gone)
+    stiffness, mass = ((follow.T @ matrix @ follow)[np.ix_(free, free)] for matrix in (STIFFNESS, MASS))
+    model = replace(MODEL, stiffness=csr_array(stiffness), mass=csr_array(mass), dofs=MODEL.dofs[free])
+    equation = f"*EQUATION\n2\n{LABELS[8]}, 1, 1., {LABELS[0]}, 1, -1.\n"
+    write_deck(tmp_path / "job.inp", MESH, LABELS, scale=1e3, more=equation)
+    write_labelled(tmp_path / MASS2, mass, model, LABELS)
+    source = write_labelled(tmp_path / STIF, stiffness, model, LABELS)
+    found = read(source)
+    along_x = found.dofs[:, 1] == 0
+    assert found.mass[along_x][:, along_x].sum() == pytest.approx(MODEL.mass_properties().mass, rel=1e-12)
+
+
 def changed(path: Path, old: str, new: str) -> None:
     text = path.read_text()
     assert old in text
@@ -217,6 +261,22 @@ def line(path: Path, number: int, text: str) -> None:
 
 
 STIF, MASS2 = "job_STIF2.mtx", "job_MASS2.mtx"
+
+
+def entry(path: Path, value: str) -> None:
+    """The first number of the diagonal, in place of its own."""
+    lines = path.read_text().splitlines()
+    at = next(i for i, text in enumerate(lines) if text.split(", ")[0] == text.split(", ")[1])
+    line(path, at + 1, f"{lines[at].rpartition(' ')[0]} {value}")
+
+
+def held_alone(folder: Path) -> None:
+    """A motion far from those that the deck holds."""
+    entry(folder / STIF, "1.e36")
+    with (folder / "job.inp").open("a") as deck:
+        deck.write("*BOUNDARY\n" + "".join(f"{label}, 4, 6\n" for label in LABELS[:3]))
+
+
 BAD = {
     "mass absent": (lambda at: (at / MASS2).unlink(), f"{MASS2}: there is no such file"),
     "no number": (lambda at: line(at / STIF, 5, "7,1, 7,1, x"), f"{STIF}: line 5: found 'x', expected a number"),
@@ -236,7 +296,14 @@ BAD = {
     ),
     "truncated": (lambda at: (at / MASS2).write_text((at / MASS2).read_text()[:9000]), "have no mass|expected 5|share"),
     "a lost element": (lambda at: changed(at / "job.inp", "\n5, ", "\n** "), "act on each other, but share no element"),
-    "a set": (lambda at: (at / "job.inp").unlink(), "job.inp: there is no such file"),
+    "no deck": (lambda at: (at / "job.inp").unlink(), "job.inp: there is no such file: 'mesh' is looked for beside"),
+    "not finite": (lambda at: entry(at / STIF, "inf"), r"STIF2.mtx: found inf in the entry \d+, \d, \d+, \d, expected"),
+    "no number at all": (lambda at: entry(at / MASS2, "nan"), r"MASS2.mtx: found nan in the entry"),
+    "nearly held": (lambda at: entry(at / STIF, "1.e35"), r"found 1e\+35 on the diagonal for node .*writes 1e\+36"),
+    "held by chance": (
+        lambda at: held_alone(at),
+        r"1 motions are held here or by \*BOUNDARY of job.inp, but not by both",
+    ),
     "a table": (lambda at: (at / STIF).write_text("1, 2\n"), "its lines hold 2 numbers, expected 3 .* or 5"),
 }
 
@@ -278,6 +345,21 @@ def test_companions_are_named_by_options_too(tmp_path):
     with pytest.raises(prs.PartFileError, match=r"say 'options: \{mass: <file>\}'"):
         read(renamed[STIF], mesh="mesh.dat")
     assert not source.exists()
+
+
+def test_a_name_may_have_dots(tmp_path):
+    exported(tmp_path)
+    for name in (STIF, MASS2, "job.inp"):
+        (tmp_path / name).rename(tmp_path / name.replace("job", "rod.v2"))
+    assert read(tmp_path / "rod.v2_STIF2.mtx").size == MODEL.size
+
+
+def test_the_deck_is_not_the_source(tmp_path):
+    exported(tmp_path)
+    with pytest.raises(
+        prs.PartFileError, match=r".inp is not read, expected the stiffness .*beside it are job_MASS2.mtx"
+    ):
+        read(tmp_path / "job.inp")
 
 
 def test_units_of_the_file_are_asked_for(tmp_path):

@@ -52,6 +52,18 @@ def test_the_held_bracket_is_as_recorded():
 
 
 @needs_data
+def test_the_bracket_is_the_one_that_the_solver_solved():
+    """Against CalculiX's own tables of frequencies, of seven digits, and the CAD body that was meshed."""
+    record = reference("calculix/solver_frequencies_hz")
+    free, fixed = (read(DATA / "calculix" / f"full_{name}.sti.gz") for name in ("free", "fixed"))
+    np.testing.assert_allclose(free.frequencies(12)[6:], record["freq_free.dat_elastic"], rtol=1e-6)
+    np.testing.assert_allclose(fixed.frequencies(10), record["freq_fixed.dat"], rtol=1e-6)
+    properties = free.mass_properties()  # elements with straight edges in the bores have a little more volume
+    assert properties.mass * 1e-3 == pytest.approx(record["CAD_mass_t"], rel=1e-4)
+    np.testing.assert_allclose(properties.centre * 1e3, record["CAD_cg_mm"], atol=1e-3)
+
+
+@needs_data
 def test_a_gmsh_mesh_serves_as_well_as_the_deck():
     source = DATA / "calculix" / "full_free.sti.gz"
     model = read(source, mesh="bracket.msh")
@@ -165,6 +177,15 @@ def bracket(folder: Path, name: str, change: dict[str, object] | None = None) ->
     return folder / f"{name}.sti"
 
 
+def test_other_files_are_not_the_source(tmp_path):
+    (tmp_path / "part.sti").touch()
+    for name, found in (("part.inp", ".inp is not read"), ("part.mtx", ".mtx is not read"), ("port", "no such file")):
+        if name != "port":
+            (tmp_path / name).write_text("1 1 2.0\n")
+        with pytest.raises(prs.PartFileError, match=f"{found}, expected .sti or .sti.gz.*beside it is part.sti"):
+            read(tmp_path / name)
+
+
 def swap(a: int, b: int):
     def swapped(lines: list[str]) -> list[str]:
         lines = list(lines)
@@ -193,7 +214,10 @@ BAD = {
         r"not in full_fixed.inp \(the first is 9999",
     ),
     "a row twice": ({"dof": lambda lines: [*lines[:-1], lines[0]]}, "1 motions have more than one row"),
-    "truncated": ({"sti": lambda lines: lines[:-5]}, r"\.sti: its last entry is .*, expected 5046 5046.*truncated"),
+    "truncated": (
+        {"sti": lambda lines: lines[:-5]},
+        r"\.sti: its last entry is .*, expected 5046 5046.*full_fixed.dof has rows.*of another job",
+    ),
     "a line lost": ({"sti": lambda lines: lines[:70] + lines[71:]}, r"\.mas: its entries are not at the places"),
     "lines swapped": ({"mas": swap(900, 901)}, r"\.mas: not an upper triangle column by column"),
     "a stiffness changed": ({"sti": with_entry(80_000, 1.0)}, "resist rigid motion though no held node is near"),

@@ -14,11 +14,13 @@ from prs_model.plugins import PartRequest, Reducer
 from prs_model.reduction import SuperElement
 
 from ..meshes.meshed_part import meshed_model
-from ..meshes.part_mesh import mesh_files, read_part_mesh
+from ..meshes.part_mesh import mesh_files, read_part_mesh, wrong_source
+from ..tables.user_element import is_user_element
 from .matrix_output import read_matrices
-from .substructure import is_substructure, read_substructure
+from .substructure import read_substructure
 
-NAMED = re.compile(r"(?P<job>.*?)(?P<what>[_-]?(STIF|MASS))(?P<step>\d+)", re.IGNORECASE)
+NAMED = re.compile(r"(?P<job>.*?)(?P<what>[_-]?(STIF|MASS))(?P<step>\d+)(?P<suffix>(\.\w+)?(\.gz)?)", re.IGNORECASE)
+OTHER_FILES = (".inp", ".odb", ".sim", ".fil", ".msh")
 OTHER = {"stif": "mass", "mass": "stif", "STIF": "MASS", "MASS": "STIF"}
 
 
@@ -48,7 +50,7 @@ class AbaqusReducer(Reducer[AbaqusOptions]):
         """
         stiffness, mass, mesh = _paths(part)
         text = read_text(stiffness)
-        if is_substructure(text):
+        if is_user_element(text):
             return read_substructure(text, stiffness, lambda: read_part_mesh(mesh), part.file_units)
         labelled = read_part_mesh(mesh)
         matrices = read_matrices(text, stiffness, _mass(part, mass), labelled)
@@ -61,16 +63,18 @@ class AbaqusReducer(Reducer[AbaqusOptions]):
 
 def _paths(part: PartRequest[AbaqusOptions]) -> tuple[Path, Path | None, Path]:
     """Stiffness, mass (None where no name leads to it) and mesh."""
-    folder, name = part.path.parent, part.path.name
-    stem, dot, suffix = name.partition(".")
-    found = NAMED.fullmatch(stem)
-    job, options = (found["job"] if found else stem), part.options
+    folder, options = part.path.parent, part.options
+    if part.path.suffix.lower() in OTHER_FILES:
+        what = "the stiffness (.mtx) that *MATRIX OUTPUT or *SUBSTRUCTURE MATRIX OUTPUT writes"
+        raise wrong_source(part.path, f"{part.path.suffix} is not read", what, ("*.mtx", "*.mtx.gz"))
+    found = NAMED.fullmatch(part.path.name)
+    job = found["job"] if found else Path(part.path.name.removesuffix(".gz")).stem
     mesh = folder / (options.mesh or f"{job}.inp")
     if options.mass is not None or found is None:
         return part.path, (folder / options.mass if options.mass else None), mesh
     what = found["what"]
     other = what[:-4] + OTHER.get(what[-4:], "MASS")
-    companion = folder / f"{job}{other}{found['step']}{dot}{suffix}"
+    companion = folder / f"{job}{other}{found['step']}{found['suffix']}"
     return (part.path, companion, mesh) if what[-4:].upper() == "STIF" else (companion, part.path, mesh)
 
 

@@ -8,15 +8,18 @@ from pathlib import Path
 import numpy as np
 from scipy.sparse import coo_array, csr_array
 
-from prs_model.arrays import FloatArray, IntArray
+from prs_model.arrays import BoolArray, FloatArray, IntArray
 from prs_model.errors import PartFileError, short
 from prs_model.part_files import LabelledMatrices, read_text
 
 from ..meshes.labelled_mesh import LabelledMesh
+from ..meshes.mesh_agreement import sentence_of
 from ..tables.number_table import read_table, whole_numbers
 
-HELD = 1e35
-"""Abaqus holds a motion by 1e36 on the diagonal of the stiffness."""
+HELD = 1e36
+"""What Abaqus writes on the diagonal of the stiffness of a motion that is held."""
+LARGEST = 1e30
+"""No stiffness of a part is as large, in any units."""
 INTERNAL = (
     "nodes that Abaqus makes inside (negative labels; of hybrid beams, couplings and contact): "
     "use plain solid, shell or B31 and B32 elements, and leave couplings to the interfaces"
@@ -49,11 +52,44 @@ def read_matrices(text: str, stiffness: Path, mass: Path, mesh: LabelledMesh) ->
         at = numbers.reshape(2, -1)
         k = _matrix(of_k, at[0], at[1], len(labels))
         m = _matrix(of_m, _found(of_m, of_m.rows, labels), _found(of_m, of_m.columns, labels), len(labels))
-    free = np.flatnonzero(k.diagonal() < HELD)
+    free = _free(k, labels, stiffness, mesh)
     labels = labels[free]
     return LabelledMatrices(
         stiffness, csr_array(k[free][:, free]), csr_array(m[free][:, free]), labels[:, 0], labels[:, 1] - 1
     )
+
+
+def _free(stiffness: csr_array, labels: IntArray, path: Path, mesh: LabelledMesh) -> IntArray:
+    """The rows that Abaqus does not hold. Raises PartFileError when the deck holds others.
+
+    labels (n, 2): node and dof of each row.
+    """
+    diagonal = stiffness.diagonal()
+    held = np.isclose(diagonal, HELD, rtol=1e-3, atol=0.0)
+    if np.any(wrong := ~held & (np.abs(diagonal) > LARGEST)):
+        row = int(np.argmax(wrong))
+        node, dof = labels[row]
+        raise PartFileError(
+            path,
+            f"found {diagonal[row]:.4g} on the diagonal for node {node}, dof {dof}; Abaqus writes {HELD:g} where it "
+            "holds a motion, and less elsewhere: damaged",
+        )
+    if np.any(held) and mesh.held is not None and len(mesh.held):
+        _check_held(np.column_stack([mesh.table.places(labels[:, 0], path), labels[:, 1] - 1]), held, path, mesh)
+    return np.flatnonzero(~held)
+
+
+def _check_held(rows: IntArray, held: BoolArray, path: Path, mesh: LabelledMesh) -> None:
+    """rows (n, 2): place in the mesh and component 0..5; held (n,): in the file, along each node's own axes."""
+    by_deck = set() if mesh.held is None else {tuple(pair) for pair in mesh.held.tolist()}
+    unlike = np.array([(tuple(row) in by_deck) != here for row, here in zip(rows.tolist(), held, strict=True)])
+    if np.any(unlike):
+        raise PartFileError(
+            path,
+            f"{np.count_nonzero(unlike)} motions are held here or by *BOUNDARY of {mesh.table.source.name}, but not by "
+            f"both: {sentence_of(rows[unlike], mesh)}; damaged, or of another step: name a deck that holds what this "
+            "step does with the option 'mesh'",
+        )
 
 
 def _entries(text: str, path: Path) -> Entries:
@@ -70,6 +106,10 @@ def _entries(text: str, path: Path) -> Entries:
     table = read_table(plain, path, width)
     numbers = whole_numbers(table[:, :-1], path, "row and column")
     half = numbers.shape[1] // 2
+    if not np.all(np.isfinite(table[:, -1])):
+        found = table[np.argmin(np.isfinite(table[:, -1]))]
+        where = ", ".join(f"{each:g}" for each in found[:-1])
+        raise PartFileError(path, f"found {found[-1]:g} in the entry {where}, expected a number: damaged")
     entries = Entries(path, numbers[:, :half], numbers[:, half:], table[:, -1])
     _check(entries)
     return entries

@@ -15,17 +15,11 @@ from prs_model.part_files import LabelledMatrices, super_element
 from prs_model.part_files.text import number
 from prs_model.reduction import SuperElement
 
-from ..calculix import SUBSTRUCTURE
 from ..meshes.labelled_mesh import LabelledMesh
+from ..tables.user_element import HEAD, OF_CALCULIX
 
 FREE = 1e-6
-HEAD = re.compile(r"^\*USER ELEMENT\b[^\n]*?NODES\s*=\s*(\d+)([^\n]*)$", re.IGNORECASE | re.MULTILINE)
 MATRIX = re.compile(r"^\*MATRIX\s*,\s*TYPE\s*=\s*(\w+)[^\n]*$", re.IGNORECASE | re.MULTILINE)
-
-
-def is_substructure(text: str) -> bool:
-    """Whether the file is a user element."""
-    return HEAD.search(text[:100_000]) is not None
 
 
 def read_substructure(text: str, path: Path, mesh: Callable[[], LabelledMesh], units: Units) -> SuperElement:
@@ -121,4 +115,4 @@ def _refuse_calculix(text: str, path: Path, stiffness: FloatArray, components: I
     shifts = np.equal.outer(components, np.arange(3)).astype(float)
     force = np.linalg.norm(stiffness @ shifts) / (np.linalg.norm(stiffness) * np.linalg.norm(shifts) or 1.0)
     if "GENERATION OF SUBSTRUCTURE" in text[:1000] and force > FREE:
-        raise PartFileError(path, f"is {SUBSTRUCTURE} (here |K t| / |K| |t| = {force:.2g} for translations t)")
+        raise PartFileError(path, f"is {OF_CALCULIX} (here |K t| / |K| |t| = {force:.2g} for translations t)")
