@@ -18,8 +18,10 @@ from prs_model.testing.element import plain_element
 from prs_reducers.ansys import load_full
 from prs_reducers.meshes.mesh_file import TetrahedralMesh
 from tests.meshes import STEEL, box, steel, write
-from tests.reducers import test_ansys, test_samcef
+from tests.reducers.writers.ansys import FOOT, ROTOR, back, listing, market, places_of
 from tests.reducers.writers.extdb import write_extdb
+from tests.reducers.writers.openfast import flex
+from tests.reducers.writers.samcef import DECK, fortran, matrices, table
 from tests.superelements import DATA, reference
 
 BLOCK, COARSE, FINE = (0.12, 0.04, 0.03), (2, 1, 1), (3, 1, 1)  # m, cells
@@ -69,7 +71,7 @@ def gmsh_text(folder: Path) -> Sample:
 def gmsh_41(folder: Path) -> Sample:
     """A bracket as gmsh writes it today, text of version 4.1."""
     bores = {"foot": {"set": "IF1"}, "head": {"set": "IF2"}}
-    volume = 113420.17763138447e-9  # m^3, of the CAD body
+    volume = 1e-9 * reference("calculix/solver_frequencies_hz")["CAD_volume_mm3"]
     return Sample(
         "solid",
         DATA / "calculix" / "bracket.msh",
@@ -160,13 +162,23 @@ def extdb(folder: Path) -> Sample:
 
 def samcef(folder: Path) -> Sample:
     """Two dense matrices, a table of rows, and coordinates and units from a BACON deck."""
-    stiffness, mass = test_samcef.matrices()
-    (folder / "k.txt").write_text(test_samcef.fortran(stiffness))
-    (folder / "m.txt").write_text(test_samcef.fortran(mass))
-    (folder / "dofs.txt").write_text(test_samcef.table(places=False))
-    (folder / "part.dat").write_text(test_samcef.DECK)
+    stiffness, mass = matrices()
+    (folder / "k.txt").write_text(fortran(stiffness))
+    (folder / "m.txt").write_text(fortran(mass))
+    (folder / "dofs.txt").write_text(table(places=False))
+    (folder / "part.dat").write_text(DECK)
     options = {"mass": "m.txt", "dofs": "dofs.txt", "deck": "part.dat"}
     return Sample("samcef", folder / "k.txt", MM, options, PLAIN, mass=4.0, unseen=ANY_NUMBER)
+
+
+def openfast(folder: Path) -> Sample:
+    """ExtPtfm text of a clamped substructure with one mode of 3 Hz."""
+    (folder / "part.dat").write_text(flex())
+    unseen = {"*: another digit*": HELD, "*: a bit flipped*": HELD}
+    top = {"top": {"node": "interface"}}
+    return Sample(
+        "openfast", folder / "part.dat", interfaces=top, grounded=True, fixed=(3.0,), accuracy=1e-6, unseen=unseen
+    )
 
 
 def ansys_export(folder: Path) -> Sample:
@@ -177,10 +189,10 @@ def _ansys_export(folder: Path, mesh: TetrahedralMesh) -> Sample:
     """APDL's *EXPORT of both matrices as MMF, the nodes of their rows, and a list of nodes with decimal commas."""
     model = steel(mesh)
     labels = np.arange(1, len(model.coordinates) + 1)
-    (folder / "k.txt").write_text(test_ansys.market(model.stiffness.toarray()))
-    (folder / "m.txt").write_text(test_ansys.market(model.mass.toarray()))
-    (folder / "map.txt").write_text(test_ansys.back(labels))
-    (folder / "nodes.txt").write_text(test_ansys.listing(labels, model.coordinates))
+    (folder / "k.txt").write_text(market(model.stiffness.toarray()))
+    (folder / "m.txt").write_text(market(model.mass.toarray()))
+    (folder / "map.txt").write_text(back(labels))
+    (folder / "nodes.txt").write_text(listing(labels, model.coordinates))
     options = {"mass": "m.txt", "map": "map.txt", "coordinates": "nodes.txt"}
     ends = {
         name: {"plane": {"point": (x, 0.0, 0.0), "normal": (1, 0, 0), "tolerance": 1e-6}}
@@ -190,12 +202,12 @@ def _ansys_export(folder: Path, mesh: TetrahedralMesh) -> Sample:
 
 
 def ansys_full(folder: Path) -> Sample:
-    """The public .full file, with the coordinates that its stiffness tells (see test_ansys)."""
-    source = shutil.copy(test_ansys.ROTOR, folder / "part.full")
-    nodes, points = test_ansys.places_of(load_full(Path(source)))
-    (folder / "nodes.txt").write_text(test_ansys.listing(nodes, points))
+    """The public .full file, with the coordinates that its stiffness tells (see `places_of`)."""
+    source = shutil.copy(ROTOR, folder / "part.full")
+    nodes, points = places_of(load_full(Path(source)))
+    (folder / "nodes.txt").write_text(listing(nodes, points))
     free = (reference("ansys/sparse.full")["freq_hz_first"][6],)
-    return Sample("ansys", source, "m-N-kg-s", {"coordinates": "nodes.txt"}, test_ansys.FOOT, free=free)
+    return Sample("ansys", source, "m-N-kg-s", {"coordinates": "nodes.txt"}, FOOT, free=free)
 
 
 def rigid(folder: Path) -> Sample:
@@ -270,7 +282,7 @@ def extptfm(folder: Path) -> Sample:
 
 OWN: tuple[Callable[[Path], Sample], ...] = (
     npz, gmsh, gmsh_text, solid_deck, calculix, abaqus, matrix_market, matrix_market_of_others,
-    dmig, dmig_of_others, op4, extdb, samcef, ansys_export,
+    dmig, dmig_of_others, op4, extdb, samcef, openfast, ansys_export,
 )  # fmt: skip
 REAL: tuple[Callable[[Path], Sample], ...] = (outboard, nas2cam, ansys_full, subdyn, extptfm)
 WITHOUT_FILE: tuple[Callable[[Path], Sample], ...] = (rigid, lumped, beam)

@@ -11,15 +11,14 @@ from scipy.sparse import csc_array, tril
 
 import prs_model as prs
 from prs_model.arrays import FloatArray, IntArray
+from prs_model.description.units import Units
 from prs_model.part_files import LabelledMatrices
 from prs_model.reduction.summary import summarize
 from prs_reducers.ansys import load_full
 from prs_reducers.ansys.node_list import read_nodes, rotated_axes
-from tests.superelements import DATA, needs_data, reference
+from tests.reducers.writers.ansys import FOOT, ROTOR, back, listing, mapping, market, places_of
+from tests.superelements import needs_data, reference
 
-ROTOR = DATA / "ansys" / "sparse.full"
-HEIGHT = 0.5  # m, of the rotor
-FOOT = {"foot": {"plane": {"point": [0.0, 0.0, 0.0], "normal": [0.0, 0.0, 1.0], "tolerance": 1e-6}}}
 EXAMPLES = Path(reader.origin or "").parent / "examples" if (reader := find_spec("ansys.mapdl.reader")) else Path()
 CLAMPED = EXAMPLES / "file.full"
 
@@ -34,47 +33,6 @@ def places(rotor: LabelledMatrices) -> tuple[IntArray, FloatArray]:
     return places_of(rotor)
 
 
-def places_of(rotor: LabelledMatrices) -> tuple[IntArray, FloatArray]:
-    """Nodes and coordinates, which are not in the file. K is at rest in six motions only: turning about x moves every
-    node by (0, -z, y), about y by (z, 0, -x), so the shape is in K's null space; its height is known.
-    """
-    motions = np.linalg.eigh(rotor.stiffness.toarray())[1][:, :6].reshape(-1, 3, 6)
-    turns = np.linalg.svd((motions - motions.mean(axis=0)).reshape(-1, 6), full_matrices=False)[0][:, :3]
-    about = [turns @ np.linalg.svd(turns[axis::3])[2][-1] for axis in (0, 1)]
-    (_, minus_z, y), (z, _, minus_x) = (motion.reshape(-1, 3).T for motion in about)
-    points = np.column_stack([minus_x * (minus_z @ z) / (z @ z), y, -minus_z])
-    points *= HEIGHT / np.ptp(points[:, 2])
-    weights = rotor.mass.sum(axis=1)[2::3]
-    if weights @ points[:, 2] < weights.sum() * points[:, 2].mean():  # the disc sits near the foot
-        points = points - points[:, 2].min() * np.array([0.0, 0.0, 1.0])
-    else:
-        points = -points + points[:, 2].max() * np.array([0.0, 0.0, 1.0])
-    return rotor.nodes[::3], points
-
-
-def listing(nodes: IntArray, points: FloatArray) -> str:
-    """A node table as Workbench exports it in German."""
-    rows = ["\t".join([str(node), *(f"{value:.12e}".replace(".", ",") for value in place)]) for node, place in
-            zip(nodes.tolist(), points, strict=True)]  # fmt: skip
-    return "Knotennummer\tX-Position (m)\tY-Position (m)\tZ-Position (m)\t\n" + "\t\n".join(rows) + "\t\n"
-
-
-def market(matrix: FloatArray) -> str:
-    """One triangle as *EXPORT,..,MMF writes it."""
-    half = tril(matrix).tocoo()
-    rule = "%" + 60 * "="
-    head = f"%%MatrixMarket matrix coordinate real symmetric \n{rule}\n% Creator: ANSYS Inc\n% \n{rule}\n"
-    rows, columns = half.coords
-    entries = [f"{i + 1} {j + 1} {v:.15E}" for i, j, v in zip(rows, columns, half.data, strict=True)]
-    return head + f"{matrix.shape[0]} {matrix.shape[0]} {half.nnz}\n" + "\n".join(entries) + "\n"
-
-
-def back(nodes: IntArray) -> str:
-    return f"%%MatrixMarket matrix array integer general \n% Creator: ANSYS Inc\n{len(nodes)} 1\n" + "".join(
-        f"{node}\n" for node in nodes
-    )
-
-
 @pytest.fixture
 def export(tmp_path: Path, rotor: LabelledMatrices, places: tuple[IntArray, FloatArray]) -> Path:
     (tmp_path / "k.txt").write_text(market(rotor.stiffness.toarray()))
@@ -85,6 +43,7 @@ def export(tmp_path: Path, rotor: LabelledMatrices, places: tuple[IntArray, Floa
 
 
 OPTIONS = {"mass": "m.txt", "map": "map.txt", "coordinates": "nodes.txt"}
+PAGE = (Path(__file__).parents[2] / "docs" / "part-files.md").read_text()
 
 
 @needs_data
@@ -129,9 +88,7 @@ def test_harwell_boeing_with_its_mapping(export: Path, rotor: LabelledMatrices, 
     for name, matrix in (("k.hb", rotor.stiffness), ("m.hb", rotor.mass)):
         hb_write(export / name, csc_array(tril(matrix) if kind == "RSA" else matrix))
         (export / name).write_text((export / name).read_text().replace("RUA", kind))
-    rows = zip(rotor.nodes, rotor.components, strict=True)
-    lines = [f"{row:14d}{node:14d}  {('UX', 'UY', 'UZ')[c]}" for row, (node, c) in enumerate(rows, start=1)]
-    (export / "k.mapping").write_text("  Matrix Eqn          Node   DOF\n" + "\n".join(lines) + "\n")
+    (export / "k.mapping").write_text(mapping(rotor.nodes, rotor.components))
     options = {**OPTIONS, "mass": "m.hb", "map": "k.mapping"}
     model = prs.read_part("ansys", export / "k.hb", units="m-N-kg-s", **options)
     np.testing.assert_allclose(model.stiffness.toarray(), rotor.stiffness.toarray(), rtol=1e-15)
@@ -140,6 +97,34 @@ def test_harwell_boeing_with_its_mapping(export: Path, rotor: LabelledMatrices, 
     (export / "m.hb").write_text(text[: text.rindex("\n", 0, -1) + 1])
     with pytest.raises(prs.PartFileError, match=r"its heading says .*: cut off"):
         prs.read_part("ansys", export / "k.hb", units="m-N-kg-s", **options)
+
+
+@needs_data
+@pytest.mark.parametrize(("first", "files"), [("K.mtx", {"M.mtx", "MAP.mtx"}), ("K.matrix", {"M.matrix", "K.mapping"})])
+def test_the_recipes_of_the_guide(
+    tmp_path: Path, rotor: LabelledMatrices, places: tuple[IntArray, FloatArray], first: str, files: set[str]
+) -> None:
+    """The files that the guide's commands leave, with the options it says."""
+    lines = [line for line in PAGE.splitlines() if f"prs-model reduce {first} --reducer ansys" in line]
+    options = dict(word.split("=") for word in lines[0].split() if word.startswith(("mass=", "map=", "coordinates=")))
+    assert {options["mass"], options["map"]} == files
+    for name, matrix in ((first, rotor.stiffness), (options["mass"], rotor.mass)):
+        if first.endswith(".mtx"):
+            (tmp_path / name).write_text(market(matrix.toarray()))
+        else:
+            hb_write(tmp_path / name, csc_array(tril(matrix)))
+            (tmp_path / name).write_text((tmp_path / name).read_text().replace("RUA", "RSA"))
+    rows = back(places[0]) if "*VEC,MAP,I,IMPORT,FULL,part.full,BACK" in PAGE else ""
+    (tmp_path / options["map"]).write_text(rows if first.endswith(".mtx") else mapping(rotor.nodes, rotor.components))
+    (tmp_path / options["coordinates"]).write_text(listing(*places))
+    model = prs.read_part("ansys", tmp_path / first, units="m-N-kg-s", **options)
+    np.testing.assert_allclose(model.stiffness.toarray(), rotor.stiffness.toarray(), rtol=1e-14)
+
+
+@needs_data
+def test_places_must_be_named() -> None:
+    with pytest.raises(prs.PartFileError, match=r"does not say where its nodes are: name .*CDWRITE,DB,part,cdb"):
+        prs.read_part("ansys", ROTOR, units="m-N-kg-s")
 
 
 def without(word: str) -> Callable[[str], str]:
@@ -153,6 +138,7 @@ def without(word: str) -> Callable[[str], str]:
         ("k.txt", lambda text: text[: len(text) // 2], "ends within its last line|cut off"),
         ("k.txt", lambda text: text.replace("general", "x").replace("symmetric", "general", 1), "one triangle only"),
         ("m.txt", lambda text: text.replace("345 345", "344 344", 1), "has 344 rows, expected 345|is 344x344|outside"),
+        ("map.txt", lambda text: text.replace("\n31\n", f"\n{5000 * '3'}\n"), "expected a whole number"),
         ("map.txt", without("31"), "holds 114 numbers, its size line says"),
         ("map.txt", lambda text: text.replace("\n31\n", "\n0\n"), "it is the FORWARD vector"),
         ("map.txt", lambda text: text.replace("\n31\n", "\n17\n"), "names a node twice"),
@@ -228,7 +214,14 @@ def test_archives_give_places_axes_and_node_components(tmp_path: Path) -> None:
     assert nodes.components == {"BORE": (7, 8, 12)}
     assert nodes.length is None
     path.write_text(f"/UNITS,MPA\n{ARCHIVE}")
-    assert read_nodes(path).length == "mm"
+    mpa = read_nodes(path)
+    assert mpa.length == "mm"
+    mpa.check_units(Units.parse("mm-N-tonne-s"))
+    with pytest.raises(prs.PartFileError, match=r"is in mm-N-tonne-s \(/UNITS\), and 'units' says mm-mN-kg-s"):
+        mpa.check_units(Units.parse("mm-mN-kg-s"))
+    path.write_text(ARCHIVE.replace("       -8 ", "-99999999"))
+    with pytest.raises(prs.PartFileError, match=r"CMBLOCK BORE: '-99999999' ends no range"):
+        read_nodes(path)
     path.write_text(ARCHIVE.replace("        12,         3", "        12,         4"))
     with pytest.raises(prs.PartFileError, match="holds 3 nodes and says 4"):
         read_nodes(path)
@@ -246,7 +239,17 @@ def test_a_listing_of_nlist_has_pages_and_angles(tmp_path: Path) -> None:
     table = read_nodes(path).table
     np.testing.assert_array_equal(table.coordinates, [[0.0, 0.5, 1.0], [1.0, 0.0, 0.0]])
     assert table.frames is not None
+    path.write_text(path.read_text().replace("DSYS=      0", "DSYS=      1"))
+    with pytest.raises(prs.PartFileError, match=r"line 1: is listed in coordinate system 1, .* after DSYS,0"):
+        read_nodes(path)
     np.testing.assert_allclose(table.frames[0], [[1, 0, 0], [0, 0, -1], [0, 1, 0]], atol=1e-15)
+
+
+@pytest.mark.parametrize("line", ["1, 2.0, 90.0, 0.5", "1,2.0,90.0,0.5", "1;2,0;90,0;0,5", "1; 2,0; 90,0; 0,5"])
+def test_a_table_may_be_separated_by_commas_or_semicolons(tmp_path: Path, line: str) -> None:
+    path = tmp_path / "nodes.csv"
+    path.write_text(f"Node, X, Y, Z\n{line}\n")
+    np.testing.assert_array_equal(read_nodes(path).table.coordinates, [[2.0, 90.0, 0.5]])
 
 
 def test_a_table_of_workbench_writes_short_decimal_commas(tmp_path: Path) -> None:

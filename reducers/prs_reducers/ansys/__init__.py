@@ -25,6 +25,11 @@ from .row_map import read_row_map
 __all__ = ["AnsysOptions", "AnsysReducer", "load_full"]
 
 
+NO_PLACES = (
+    "does not say where its nodes are: name a file beside it as 'coordinates', an archive (CDWRITE,DB,part,cdb), a "
+    "listing of NLIST, or a node table exported from Workbench"
+)
+
 logger = logging.getLogger("prs_model")
 
 
@@ -32,11 +37,11 @@ class AnsysOptions(Section):
     """Files beside the source, relative to its folder.
 
     coordinates: where the nodes are, which no matrix file says: an archive (.cdb), a listing of NLIST, or a node table
-    of Workbench. mass, map: for exported matrices, the mass and what the rows are (the BACK vector as MMF, or HBMAT's
-    .mapping).
+    of Workbench. mass, map: for exported matrices, the mass and what the rows are (HBMAT's .mapping, or the BACK vector
+    as MMF).
     """
 
-    coordinates: str
+    coordinates: str | None = None
     mass: str | None = None
     map: str | None = None
 
@@ -45,7 +50,8 @@ class AnsysReducer(Reducer[AnsysOptions]):
     """Source: a .full file (K, M and rows in one), or a stiffness of ``*EXPORT,..,MMF`` or HBMAT with `mass` and `map`.
 
     DOFs are in the nodes' own axes, which are turned to the body's where `coordinates` has their angles. DOFs that were
-    constrained have no rows: such a part is held to the ground.
+    constrained have no rows: such a part is held to the ground, and no check sees its rows in another order; export it
+    free and clamp it here.
     """
 
     description: ClassVar[str] = "ANSYS: .full, or Matrix Market and Harwell-Boeing exports, with a list of nodes"
@@ -55,11 +61,11 @@ class AnsysReducer(Reducer[AnsysOptions]):
 
     def read(self, part: PartRequest[AnsysOptions]) -> FiniteElementModel:
         """The full matrices; node components of an archive are node sets. Raises PartFileError."""
+        if part.options.coordinates is None:
+            raise PartFileError(part.path, NO_PLACES)
         listed, units = read_nodes(part.path.parent / part.options.coordinates), part.file_units
         table = listed.table
-        if listed.length not in (None, units.length):
-            found = f"is in {listed.length}, and 'units' says {units.length}"
-            raise PartFileError(table.source, f"{found}: correct one of them, or remove the unit there")
+        listed.check_units(units)
         matrices, held = read_full(part.path) if is_full(part.path) else (self._exported(part), np.zeros(0, dtype=int))
         _warn_of_strangers(table, np.concatenate([matrices.nodes, held]), part.path)
         sets = {name: table.places(np.array(nodes), table.source) for name, nodes in listed.components.items()}

@@ -13,11 +13,11 @@ from scipy.sparse import csc_array, csr_array
 
 from prs_model.arrays import FloatArray, IntArray
 from prs_model.errors import PartFileError, short
-from prs_model.part_files.text import number
+from prs_model.part_files.text import number, whole_number
 
 from ..tables.mtx import check_end
 
-_FORMAT = re.compile(r"\(\s*(?:\d+P\s*,?\s*)?(\d*)\s*([IEDFG])\s*(\d+)[^()]*\)", re.IGNORECASE)
+_FORMAT = re.compile(r"\(\s*(?:\d+P\s*,?\s*)?(\d{0,6})\s*([IEDFG])\s*([1-9]\d{0,2})[^()]*\)", re.IGNORECASE)
 
 
 def parse_harwell_boeing(text: str, path: Path) -> csr_array:
@@ -29,11 +29,12 @@ def parse_harwell_boeing(text: str, path: Path) -> csr_array:
         raise PartFileError(
             path, "is neither Matrix Market nor Harwell-Boeing with an assembled real matrix (RSA, RUA)"
         )
-    total, *cards = _integers(lines[1], 4, path)
-    n, columns, entries = _integers(lines[2][3:], 3, path)
+    total, *cards = _integers(lines[1], 4, path)[:5]
+    right_sides = cards.pop() if len(cards) > 3 else 0
+    n, columns, entries = _integers(lines[2][3:], 3, path)[:3]
     if n != columns or entries < 1:
         raise PartFileError(path, f"the matrix is {n}x{columns} with {entries} entries, expected a square one")
-    first = 5 if len(lines[1].split()) > 4 and int(lines[1].split()[4]) > 0 else 4
+    first = 5 if right_sides > 0 else 4
     if len(lines) < first + total or sum(cards) > total:
         raise PartFileError(path, f"has {len(lines)} lines, its heading says {first + total}: cut off")
     forms = lines[3][:16], lines[3][16:32], lines[3][32:52]
@@ -46,10 +47,14 @@ def parse_harwell_boeing(text: str, path: Path) -> csr_array:
 
 
 def _integers(line: str, count: int, path: Path) -> list[int]:
-    words = line.split()[:count]
-    if len(words) < count or not all(word.isascii() and word.isdigit() for word in words):
+    words = line.split()
+    try:
+        found = [whole_number(word) for word in words]
+    except ValueError as error:
+        raise PartFileError(path, f"heading '{short(line.strip())}': {error}") from error
+    if len(found) < count:
         raise PartFileError(path, f"heading '{short(line.strip())}': expected {count} whole numbers")
-    return [int(word) for word in words]
+    return found
 
 
 def _block(lines: list[str], form: str, size: int, path: Path) -> FloatArray:

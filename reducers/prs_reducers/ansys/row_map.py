@@ -1,4 +1,4 @@
-"""What the rows of exported ANSYS matrices are: a vector of node numbers, or the mapping file of HBMAT."""
+"""What the rows of exported ANSYS matrices are: the mapping file of HBMAT, or a vector of node numbers."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 from prs_model.arrays import IntArray
 from prs_model.errors import PartFileError, short
 from prs_model.part_files import read_text
+from prs_model.part_files.text import whole_number
 
 from ..tables.mtx import check_end, is_mtx
 
@@ -23,12 +24,20 @@ def read_row_map(path: Path, rows: int) -> tuple[IntArray, IntArray]:
 
 
 def _nodal_vector(text: str, path: Path, rows: int) -> tuple[IntArray, IntArray]:
-    """``*VEC,NodeMap,I,IMPORT,FULL,file.full,BACK`` exported as MMF: the node of each group of 3 (or 6) rows."""
+    """``*VEC,MAP,I,IMPORT,FULL,part.full,BACK`` exported as MMF: the node of each group of 3 (or 6) rows.
+
+    BACK speaks of the program's internal order, the matrices are in the solver's, which leaves DOFs out that are
+    constrained or eliminated by equations. Without any of these the two are taken to be the same; the physics gate sees
+    when they are not. (NOD2SOLV, which turns the one into the other, cannot be exported.)
+    """
     lines = [line.split() for line in text.splitlines() if line.strip() and not line.startswith("%")]
-    numbers = [word for words in lines for word in words]
-    if "array" not in text.splitlines()[0].lower() or not all(word.isascii() and word.isdigit() for word in numbers):
+    try:
+        numbers = [[whole_number(word) for word in words] for words in lines]
+    except ValueError as error:
+        raise PartFileError(path, f"{error}: expected the vector of node numbers (*VEC,..,BACK as MMF)") from error
+    if "array" not in text.splitlines()[0].lower() or not numbers:
         raise PartFileError(path, "expected a dense vector of node numbers (*VEC,..,BACK exported as MMF)")
-    head, nodes = [int(word) for word in lines[0]], [int(word) for words in lines[1:] for word in words]
+    head, nodes = numbers[0], [number for line in numbers[1:] for number in line]
     if len(head) != 2 or head[1] != 1 or head[0] != len(nodes) or not nodes:
         raise PartFileError(path, f"holds {len(nodes)} numbers, its size line says {head}: cut off or no vector")
     if 0 in nodes:
@@ -52,16 +61,22 @@ def _mapping(text: str, path: Path, rows: int) -> tuple[IntArray, IntArray]:
         words = line.split()
         if not words or (not found and not words[0].isdigit()):
             continue
-        if len(words) != 3 or not words[0].isdigit() or not words[1].isdigit() or words[2].upper() not in DOFS:
-            known = ", ".join(DOFS)
-            what = f"line {count}, '{short(line.strip())}': expected equation, node and one of {known}"
-            raise PartFileError(path, what)
-        if int(words[0]) in found:
-            raise PartFileError(path, f"line {count}: equation {words[0]} stands there twice")
-        found[int(words[0])] = int(words[1]), DOFS[words[2].upper()]
+        try:
+            equation, node, component = _mapped(words)
+        except ValueError as error:
+            raise PartFileError(path, f"line {count}, '{short(line.strip())}': {error}") from error
+        if equation in found:
+            raise PartFileError(path, f"line {count}: equation {equation} stands there twice")
+        found[equation] = node, component
     if set(found) != set(range(1, rows + 1)):
         raise PartFileError(
             path, f"maps {len(found)} equations, expected 1 to {rows}, one for each row of the matrices"
         )
     nodes, components = np.array([found[row] for row in range(1, rows + 1)]).T
     return nodes, components
+
+
+def _mapped(words: list[str]) -> tuple[int, int, int]:
+    if len(words) != 3 or words[2].upper() not in DOFS:
+        raise ValueError(f"expected equation, node and one of {', '.join(DOFS)}")
+    return whole_number(words[0]), whole_number(words[1]), DOFS[words[2].upper()]

@@ -182,7 +182,7 @@ def _fact(line: str, facts: dict[str, str], sets: dict[str, tuple[str, ...]], pa
 
 def _warn_of_near_fact(line: str, path: Path) -> None:
     remark = _REMARK.match(line)
-    near = closest(remark[1].lower(), (*FACTS, "set")) if remark is not None else None
+    near = closest(remark[1].lower(), (*FACTS[:3], "set")) if remark is not None else None
     if near is not None:
         logger.warning("%s: the comment '%s' says nothing here; did you mean '%s'?", path.name, short(line, 60), near)
 
