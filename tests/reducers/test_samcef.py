@@ -74,6 +74,11 @@ def test_units_must_be_said_once_and_alike(folder: Path) -> None:
     with pytest.raises(prs.PartFileError, match="does not say its units"):
         prs.reduce("samcef", folder / "k.txt", **options)
     expect(prs.reduce("samcef", folder / "k.txt", units=MM, **options))
+    (folder / "dofs.txt").write_text(f"# units: {MM}\n{table(places=False)}")
+    expect(prs.reduce("samcef", folder / "k.txt", **options))
+    (folder / "part.dat").write_text(DECK.replace("MM N T S", "SI"))
+    with pytest.raises(prs.PartFileError, match=r"\.UNIT says 'SI', and dofs\.txt something else"):
+        prs.reduce("samcef", folder / "k.txt", **options)
 
 
 def test_exchanged_matrices_fail_the_gate(folder: Path) -> None:
@@ -114,6 +119,16 @@ def test_table_and_deck_must_agree(folder: Path) -> None:
     (folder / "part.dat").write_text(DECK.replace("Y 100.", "Y 100.1"))
     with pytest.raises(prs.PartFileError, match=r"node 23 is 0\.1 away from where part\.dat has it"):
         prs.reduce("samcef", folder / "k.txt", mass="m.txt", dofs="dofs_xyz.txt", deck="part.dat")
+
+
+def test_continued_lines_are_one(tmp_path: Path) -> None:
+    path = tmp_path / "part.dat"
+    nodes = ".NOE\n I 1 X .25 Y 0. $\n Z .3 ATT 1\n I 2 X 1. $ ! more\n\n Y 0. Z 0.\n"
+    path.write_text(f"{nodes}.3DRO I 1\n.SEL GROUP 1 $\n NOEUD\n I 2\n")
+    deck = read_deck(path)
+    assert deck.nodes is not None
+    np.testing.assert_array_equal(deck.nodes.coordinates, [[0.25, 0.0, 0.3], [1.0, 0.0, 0.0]])
+    assert deck.groups == {"1": (2,)}
 
 
 def test_other_spellings_of_public_writers(tmp_path: Path) -> None:

@@ -72,15 +72,18 @@ class SamcefReducer(Reducer[SamcefOptions]):
 
 
 def _units(part: PartRequest[SamcefOptions], table: DofTable, deck: Deck | None) -> Units:
-    """What the request, the deck and the table say. Raises PartFileError when they differ, or none of them says."""
-    if deck is not None and deck.units not in (None, part.units) and part.units is not None:
-        raise PartFileError(deck.source, f".UNIT says '{deck.units_line}', and 'units' something else: correct one")
-    units = table.units(part.units or (deck.units if deck is not None else None))
-    if units is None and deck is not None and deck.units_line:
-        raise PartFileError(
-            deck.source, f".UNIT '{deck.units_line}' is not understood: say 'units', such as mm-N-tonne-s"
-        )
-    return units or part.file_units
+    """What the request, the table and the deck say. Raises PartFileError when they differ, or none of them says."""
+    units = table.units(part.units)
+    if deck is None or deck.units is None:
+        if units is None and deck is not None and deck.units_line:
+            raise PartFileError(
+                deck.source, f".UNIT '{deck.units_line}' is not understood: say 'units', such as mm-N-tonne-s"
+            )
+        return units or part.file_units
+    if units not in (None, deck.units):
+        other = "'units'" if part.units is not None else table.source.name
+        raise PartFileError(deck.source, f".UNIT says '{deck.units_line}', and {other} something else: correct one")
+    return deck.units
 
 
 def _matrices(path: Path, mass_path: Path | None, rows: int) -> tuple[FloatArray, FloatArray]:

@@ -20,11 +20,13 @@ from prs_model.errors import PartFileError, short
 from prs_model.part_files import NodeTable, read_text
 from prs_model.part_files.text import number
 
+CONTINUED = ("$", "&")
 NODES, ELEMENTS = ("NOEUD", "NOEUDS", "NODE", "NODES"), ("MAILLE", "MAILLES", "ELEMENT", "ELEMENTS")
 LENGTHS = {"M": "m", "MM": "mm", "METRE": "m", "METER": "m", "MILLIMETRE": "mm", "MILLIMETER": "mm"}
 MASSES = {"KG": "kg", "T": "tonne", "TON": "tonne", "TONNE": "tonne"}
 SYSTEMS = {("m", "kg"): "m-N-kg-s", ("mm", "tonne"): "mm-N-tonne-s"}
 
+_COMMAND = re.compile(r"\.\d?[A-Za-z]{2}")  # .NOE, and such as .3DRO; but .3, .3E5 are numbers
 _WORD = re.compile(r'"([^"]*)"|([^\s"=,]+)')
 
 Line = tuple[int, list[str]]
@@ -77,20 +79,29 @@ class _LineError(Exception):
 
 
 def _commands(text: str) -> Iterator[tuple[str, list[Line]]]:
-    """Each command with its lines of words, without comments (!) and continuation ($, &); names keep their quotes."""
-    name, lines = "", list[Line]()
+    """Each command with its lines of words, without comments (!), continued ones ($, & at the end) joined.
+
+    Names keep their quotes. A command never continues the line before it.
+    """
+    name, lines, joins = "", list[Line](), False
     for count, raw in enumerate(text.splitlines(), start=1):
         words = [f'"{quoted}' if quoted else plain for quoted, plain in _WORD.findall(raw.split("!")[0])]
-        words = [word for word in words if word not in ("$", "&")]
+        if not words:
+            continue
+        continued = words[-1] in CONTINUED
+        words = [word for word in words if word not in CONTINUED]
         if words == ["RETURN"]:
             break
-        if words and re.match(r"\.[A-Za-z3]", words[0]):
+        if words and _COMMAND.match(words[0]):
             if name:
                 yield name, lines
-            name, lines = words[0].upper(), []
+            name, lines, joins = words[0].upper(), [], False
             words = words[1:]
-        if words:
+        if joins and lines:
+            lines[-1][1].extend(words)
+        elif words:
             lines.append((count, words))
+        joins = continued
     if name:
         yield name, lines
 

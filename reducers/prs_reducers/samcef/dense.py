@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -29,37 +30,51 @@ def read_dense(text: str, path: Path, rows: int) -> dict[str, FloatArray]:
     check_end(text, path)
     found: dict[str, FloatArray] = {}
     titles, values = list[str](), list[float]()
-    for count, raw in enumerate(text.splitlines(), start=1):
-        line = raw.strip()
-        if not line or line.startswith(COMMENTS):
-            titles += [] if values else [line]
-            continue
-        if not _STARTS_A_NUMBER.match(line):
-            if values:
-                raise _unfinished(values, rows, f"line {count}, '{short(line)}'", path)
+    for count, kind, line in _lines(text):
+        if kind == "numbers":
+            if not values and _is_size(line, rows, count, path):
+                continue
+            values += _numbers(line, count, path)
+            if len(values) > rows * rows:
+                what = f"line {count}: the {rows}x{rows} matrix does not end with a line; is its size right?"
+                raise PartFileError(path, what)
+            if len(values) == rows * rows:
+                found[_name(titles, found, path)] = np.array(values).reshape(rows, rows)
+                titles, values = [], []
+        elif not values:
             titles.append(line)
-            continue
-        words = line.split()
-        if not values and len(words) <= 2 and all(word.isdigit() for word in words):
-            if {int(word) for word in words} != {rows}:
-                raise PartFileError(
-                    path, f"line {count}: a matrix of size {line}, expected {rows} as the table of rows"
-                )
-            continue
-        try:
-            values += [number(word) for word in words]
-        except ValueError as error:
-            raise PartFileError(path, f"line {count}: {error}") from error
-        if len(values) > rows * rows:
-            raise PartFileError(
-                path, f"line {count}: the {rows}x{rows} matrix does not end with a line; is its size right?"
-            )
-        if len(values) == rows * rows:
-            found[_name(titles, found, path)] = np.array(values).reshape(rows, rows)
-            titles, values = [], []
+        elif kind == "title":
+            raise _unfinished(values, rows, f"line {count}, '{short(line)}'", path)
     if values:
         raise _unfinished(values, rows, "the end of the file", path)
     return found
+
+
+def _lines(text: str) -> Iterator[tuple[int, str, str]]:
+    """Number, kind (comment, title or numbers) and content of each line that is not blank."""
+    for count, raw in enumerate(text.splitlines(), start=1):
+        line = raw.strip()
+        if line.startswith(COMMENTS):
+            yield count, "comment", line
+        elif line:
+            yield count, "numbers" if _STARTS_A_NUMBER.match(line) else "title", line
+
+
+def _is_size(line: str, rows: int, count: int, path: Path) -> bool:
+    """Whether a line before a matrix is its size. Raises PartFileError when that is not the table's."""
+    words = line.split()
+    if len(words) > 2 or not all(word.isdigit() for word in words):
+        return False
+    if any(word.lstrip("0") != str(rows) for word in words):
+        raise PartFileError(path, f"line {count}: a matrix of size {short(line)}, expected {rows} as the table of rows")
+    return True
+
+
+def _numbers(line: str, count: int, path: Path) -> list[float]:
+    try:
+        return [number(word) for word in line.split()]
+    except ValueError as error:
+        raise PartFileError(path, f"line {count}: {error}") from error
 
 
 def _unfinished(values: list[float], rows: int, where: str, path: Path) -> PartFileError:
