@@ -49,11 +49,14 @@ class UnknownNameError(PrsError):
 
 
 class PluginError(PrsError):
-    """An installed plug-in that cannot be used: `name` is registered as `value`, and `cause` is what is wrong."""
+    """An installed plug-in that cannot be used: `name` is registered as `value`, and `cause` is what is wrong.
 
-    def __init__(self, what: str, name: str, value: str, cause: object):
+    outcome: how it failed, where it could be loaded.
+    """
+
+    def __init__(self, what: str, name: str, value: str, cause: object, outcome: str = "cannot be used"):
         self.what, self.name, self.value, self.cause = what, name, value, cause
-        super().__init__(f"{what} '{name}' (installed as {value}) cannot be used: {cause}")
+        super().__init__(f"{what} '{name}' (installed as {value}) {outcome}: {cause}")
 
 
 class PartFileError(PrsError):

@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import logging
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, Generic, Literal, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, Literal, TypeVar, get_args
 
 from .description.problems import closest
 from .description.schema import Body, Section
 from .description.units import Units
-from .errors import PartFileError, PluginError, UnknownNameError, short
+from .errors import PartFileError, PluginError, PrsError, UnknownNameError, short
 
 if TYPE_CHECKING:
     from .finite_elements import FiniteElementModel
@@ -27,6 +28,13 @@ _WHAT = {REDUCERS: "reducer", MACHINES: "machine", TASKS: "task"}
 _log = logging.getLogger(__name__)
 T = TypeVar("T")
 OptionsT = TypeVar("OptionsT", bound=Section)
+
+Gives = Literal["full", "reduced", "either"]
+FileUnits = Literal["asked", "optional", "SI"]
+LITERALS = {"gives": get_args(Gives), "units": get_args(FileUnits)}
+TAKEN = frozenset(
+    {"reducer", "source", "interfaces", "units", "modes", "coupling", "grounded", "clamped", "expected", "options"}
+)  # arguments of `reduce`, which no option can have as its name
 
 NO_UNITS = "the file does not say its units: add 'units', such as mm-N-tonne-s or m-N-kg-s"
 
@@ -71,8 +79,8 @@ class Reducer(ABC, Generic[OptionsT]):
     description: ClassVar[str]
     Options: ClassVar[type[Section]]
     needs_source: ClassVar[bool] = True
-    gives: ClassVar[Literal["full", "reduced", "either"]] = "either"
-    units: ClassVar[Literal["asked", "optional", "SI"]] = "asked"
+    gives: ClassVar[Gives] = "either"
+    units: ClassVar[FileUnits] = "asked"
     writes: ClassVar[tuple[str, ...]] = ()
     version: ClassVar[int] = 1
 
@@ -92,6 +100,39 @@ class Reducer(ABC, Generic[OptionsT]):
 def reducer(name: str) -> Reducer[Any]:
     """The reducer plug-in of that name. Raises UnknownNameError or PluginError."""
     return _use(REDUCERS, name, _reducer)
+
+
+@contextmanager
+def reading(name: str, part: PartRequest[Any]) -> Iterator[None]:
+    """Where a reducer reads `part`: what its code raises that is no PrsError becomes a PluginError naming the file."""
+    try:
+        yield
+    except (PrsError, MemoryError):
+        raise
+    except Exception as error:
+        raise _failed(name, part, f"{type(error).__name__}: {error}") from error
+
+
+def read(name: str, part: PartRequest[Any]) -> FiniteElementModel | SuperElement:
+    """What a reducer reads. Raises PluginError where its code fails, or gives something else than it says it does."""
+    from .finite_elements import FiniteElementModel
+    from .reduction import SuperElement
+
+    plugin = reducer(name)
+    with reading(name, part):
+        given = plugin.read(part)
+    kinds = {"full": (FiniteElementModel,), "reduced": (SuperElement,), "either": (FiniteElementModel, SuperElement)}
+    expected = kinds[plugin.gives]
+    if not isinstance(given, expected):
+        wanted = " or a ".join(kind.__name__ for kind in expected)
+        raise _failed(name, part, f"it gave {short(repr(given))}, expected a {wanted}")
+    return given
+
+
+def _failed(name: str, part: PartRequest[Any], cause: str) -> PluginError:
+    point = _found(REDUCERS)[name]
+    outcome = f"failed on {part.source or part.name}"
+    return PluginError(_WHAT[REDUCERS], name, _origin(point), f"{cause}; report it to its author", outcome)
 
 
 def task(name: str) -> type[Task]:
@@ -165,6 +206,13 @@ class _UnfitError(Exception):
 
 def _reducer(point: EntryPoint) -> Reducer[Any]:
     plugin: type[Reducer[Any]] = _class(point, Reducer, {"description": str, "Options": type})
+    for name, choices in LITERALS.items():
+        if (found := getattr(plugin, name)) not in choices:
+            raise _UnfitError(f"found {name} = {found!r} in {plugin.__name__}, expected one of {', '.join(choices)}")
+    if not issubclass(plugin.Options, Section):
+        raise _UnfitError(f"found Options that are no subclass of prs_model.Section in {plugin.__name__}")
+    if taken := sorted(TAKEN & plugin.Options.model_fields.keys()):
+        raise _UnfitError(f"found an option '{taken[0]}', which is an argument of prs_model.reduce: rename it")
     return plugin()
 
 

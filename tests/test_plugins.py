@@ -1,5 +1,6 @@
 """Plug-ins of other distributions: sound ones are found, broken ones are named and break nothing else."""
 
+import inspect
 import json
 import logging
 from collections.abc import Callable, Iterator
@@ -22,12 +23,29 @@ class Nameless(Reducer):
 class Angry(RigidReducer):
     def __init__(self): raise OSError("no licence")
 
+class Reducd(RigidReducer):
+    gives = "reducd"
+
+class Greedy(RigidReducer):
+    class Options(RigidOptions):
+        modes: int = 3
+
+class Failing(RigidReducer):
+    needs_source = True
+    units = "SI"
+    def read(self, part): return {}["pts"]
+
+class Empty(Failing):
+    def read(self, part): return None
+
 number = 3
 """
 
 REDUCERS = {
     "absent": ("no_such_module:Thing", "ModuleNotFoundError: No module named 'no_such_module'"),
     "angry": ("elsewhere:Angry", "OSError: no licence"),
+    "greedy": ("elsewhere:Greedy", "found an option 'modes', which is an argument of prs_model.reduce"),
+    "reducd": ("elsewhere:Reducd", "found gives = 'reducd' in Reducd, expected one of full, reduced, either"),
     "nameless": ("elsewhere:Nameless", "found no 'description' in Nameless"),
     "number": ("elsewhere:number", "found 3, expected a subclass of prs_model.Reducer"),
 }
@@ -79,6 +97,27 @@ def test_broken_reducers_are_named_with_their_cause(
     rows = {row["name"]: row for row in json.loads(capsys.readouterr().out)["reducers"]}
     assert rows["solid"]["problem"] is None
     assert all(cause in rows[name]["problem"] for name, (_, cause) in REDUCERS.items())
+
+
+@pytest.mark.parametrize(
+    ("name", "cause"), [("failing", "KeyError: 'pts'"), ("empty", "it gave None, expected a Super")]
+)
+def test_a_reducer_that_fails_is_named_with_its_package_and_the_file(
+    install: Install, tmp_path: Path, name: str, cause: str
+) -> None:
+    (source := tmp_path / "bad.tri").touch()
+    install("lab", {"reducers": {name: f"elsewhere:{name.title()}"}})
+    for use in (prs.reduce, prs.read_part):
+        with pytest.raises(prs.PluginError) as caught:
+            use(name, source, options={"mass": 1.0, "nodes": {"a": (0.0, 0.0, 0.0)}})
+        said = f"reducer '{name}' (installed as elsewhere:{name.title()} of lab) failed on {source}: {cause}"
+        assert str(caught.value).startswith(said)
+        assert str(caught.value).endswith("; report it to its author")
+
+
+def test_no_option_can_hide_an_argument_of_reduce() -> None:
+    named = set(inspect.signature(prs.reduce).parameters) - {"nodes", "more"}
+    assert named == plugins.TAKEN
 
 
 def test_broken_machines_are_listed_with_their_cause(install: Install, capsys: pytest.CaptureFixture[str]) -> None:

@@ -22,7 +22,7 @@ def _wrong(message: str) -> PydanticCustomError:
 
 
 def _rising(bounds: tuple[float, float]) -> tuple[float, float]:
-    if bounds[0] >= bounds[1]:
+    if bounds[0] > bounds[1]:
         raise _wrong("found the bounds in falling order, expected [low, high]")
     return bounds
 

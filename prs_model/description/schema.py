@@ -6,11 +6,12 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, Tag
 
-from .interface import Coupling, Tie
+from .interface import Coupling as Coupling
 from .interface import Interface as Interface
 from .interface import Member as Member
 from .interface import Point as Point
 from .interface import Selection as Selection
+from .interface import Tie as Tie
 from .quantity import (
     AxisRotationalStiffness,
     AxisStiffness,

@@ -8,7 +8,6 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..description.interface import Coupling, Interface, Member, Point, Selection
-from ..errors import PartFileError
 from ..finite_elements import FiniteElementModel
 from ..finite_elements.selection import select
 from .coupling import Tie
@@ -41,8 +40,6 @@ def _ties(
     entry, coupling = f"interfaces.{name}", settings.coupling_of(interface)
     if interface.node is not None:
         interface = interface.model_copy(update={"node": None, "nodes": (interface.node,)})
-    if interface.members and not interface.is_empty():
-        raise PartFileError(model.source, f"{entry}: name the nodes in the interface or in its members, not in both")
     parts: tuple[Selection, ...] = interface.members or (interface,)
     chosen = [select(model, part.alone(), shift=shift, entry=_entry(entry, part)) for part in parts]
     if settings.tie_of(interface) == "interface" and interface.members:

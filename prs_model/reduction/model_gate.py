@@ -10,22 +10,29 @@ from scipy.sparse import csr_array
 from ..finite_elements import FiniteElementModel
 from .gate import BODY, RIGID, SYMMETRY, Check, GateReport, passed
 
+HELD = "if the part is held to the ground in its file, say 'grounded: true'"
+HELD_TWICE = (
+    "if the part is held in its file already, it cannot be clamped here too: leave 'clamped' out, or export it free"
+)
 
-def check_model(model: FiniteElementModel, *, grounded: bool) -> GateReport:
+
+def check_model(model: FiniteElementModel, *, grounded: bool, clamped: bool = False) -> GateReport:
     """Run every check. Raises PhysicsError for the first that fails.
 
-    grounded: nodes are held, so rigid motion costs energy and the held nodes' mass is missing.
+    grounded: nodes are held, so rigid motion costs energy and the held nodes' mass is missing; clamped: they will be
+    held here, so that the file has the free part.
     """
-    return passed(model.name, _checks(model, grounded))
+    return passed(model.name, _checks(model, free=clamped or not grounded, advice=HELD_TWICE if clamped else HELD))
 
 
-def _checks(model: FiniteElementModel, grounded: bool) -> Iterator[Check]:
+def _checks(model: FiniteElementModel, free: bool, advice: str) -> Iterator[Check]:
     yield _symmetry("stiffness is symmetric", model.stiffness)
     yield _symmetry("mass is symmetric", model.mass)
     yield _negative("stiffness", model.stiffness)
     yield _negative("mass", model.mass)
-    if not grounded:
-        yield _free(model)
+    yield _no_mass(model.mass)
+    if free:
+        yield _free(model, advice)
         yield _equal_masses(model)
 
 
@@ -42,14 +49,20 @@ def _negative(name: str, matrix: csr_array) -> Check:
     )
 
 
-def _free(model: FiniteElementModel) -> Check:
+def _no_mass(mass: csr_array) -> Check:
+    missing = int(not np.any(mass.diagonal() > 0.0))
+    cause = "the mass matrix is empty: give the material a density, or name the file with the mass"
+    return Check("the part has no mass", missing, 0, cause)
+
+
+def _free(model: FiniteElementModel, advice: str) -> Check:
     """Force of each rigid motion about the nodes' centre, over what single entries of K would give."""
     phi = model.rigid_body_modes(about=model.coordinates.mean(axis=0))
     force = np.linalg.norm(model.stiffness @ phi, axis=0) / np.linalg.norm(phi, axis=0)
     figure = float(np.max(force, initial=0.0) / (_norm(model.stiffness) or 1.0))
     cause = (
         "rigid motion costs energy: rows in another order, output frames, nodes that moved, or a node that is held; "
-        "if the part is held to the ground, say 'grounded: true'"
+        + advice
     )
     return Check("rigid motion is free, |K phi| / |K| |phi|", figure, RIGID, cause)
 

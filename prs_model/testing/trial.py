@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import FloatArray
-from ..errors import PrsError
+from ..errors import PluginError, PrsError
 from ..reduction import SuperElement
 from .pipes import ending, read_all
 from .receptance import difference, first_eigenvalue, receptances
@@ -103,6 +103,8 @@ def _child(job: Mapping[str, Any], whole: _Whole, known: set[str], memory: int, 
 def _outcome(sample: Sample, whole: _Whole) -> Answer:
     try:
         element = sample.reduce()
+    except PluginError as error:
+        return {"result": "crash", "message": str(error)}
     except PrsError as error:
         return {"result": "refused", "message": str(error)}
     except MemoryError:

@@ -176,7 +176,6 @@ def test_a_grounded_part_is_held(model):
         ({"a": {"nodes": (1,)}}, 3, "interfaces.a.nodes: its nodes have no labels .*name a set, a box or a cylinder"),
         ({"a": {"set": "x0"}}, 5000, "too few for 5000 modes"),
         ({"a": {"node": 3}}, 3, "interfaces.a.nodes: its nodes have no labels"),
-        ({"a": {"set": "x0", "members": ({"name": "m", "set": "x1"},)}}, 3, "in the interface or in its members"),
     ],
 )
 def test_interfaces_that_cannot_hold_are_explained(model, interfaces, modes, words):

@@ -94,7 +94,7 @@ def test_settings_decide_which_stored_element_is_used(folder):
 
 
 def test_what_is_missing_is_explained(folder):
-    with pytest.raises(prs.PartFileError, match=r"no\.msh: there is no such file; correct bodies.rod.source"):
+    with pytest.raises(prs.PartFileError, match=r"no\.msh: there is no such file; correct 'source'"):
         build_part("rod", body(source="no.msh"), ReductionDefaults(), folder)
     build_part("rod", body(), DEFAULTS, folder)
     (folder / "rod.msh").unlink()
