@@ -299,6 +299,30 @@ def test_a_clamped_beam_with_its_archive(caplog: pytest.LogCaptureFixture) -> No
     assert 1283.2 <= lowest < 1.01 * 1283.2  # from above: the tip is rigid, the modes are few
 
 
-def test_the_archive_of_another_part_is_noticed(caplog: pytest.LogCaptureFixture) -> None:
-    prs.read_part("ansys", CLAMPED, units="m-N-kg-s", coordinates=str(EXAMPLES / "TetBeam.cdb"))
-    assert "have no rows in file.full: constrained, or is it the list of another part?" in caplog.text
+def test_rows_in_another_order_show_against_the_elements_of_an_archive(tmp_path: Path) -> None:
+    """Of a part that is held to the ground the physics gate cannot see it."""
+    part = load_full(CLAMPED)
+    options = {"mass": "M.matrix", "map": "K.mapping", "coordinates": str(EXAMPLES / "HexBeam.cdb")}
+    for name, matrix in (("K.matrix", part.stiffness), ("M.matrix", part.mass)):
+        hb_write(tmp_path / name, csc_array(tril(matrix)))
+        (tmp_path / name).write_text((tmp_path / name).read_text().replace("RUA", "RSA"))
+    (tmp_path / "K.mapping").write_text(mapping(part.nodes, part.components))
+    assert prs.read_part("ansys", tmp_path / "K.matrix", units="m-N-kg-s", **options).size == 900
+    swapped = part.nodes.copy()
+    swapped[[0, 1, 2, 300, 301, 302]] = swapped[[300, 301, 302, 0, 1, 2]]
+    (tmp_path / "K.mapping").write_text(mapping(swapped, part.components))
+    with pytest.raises(prs.PartFileError, match=r"act on each other, but share no element of HexBeam\.cdb"):
+        prs.read_part("ansys", tmp_path / "K.matrix", units="m-N-kg-s", **options)
+
+
+def test_the_archive_of_another_part_is_refused() -> None:
+    with pytest.raises(prs.PartFileError, match=r"share no element of TetBeam\.cdb"):
+        prs.read_part("ansys", CLAMPED, units="m-N-kg-s", coordinates=str(EXAMPLES / "TetBeam.cdb"))
+
+
+@needs_data
+def test_the_list_of_another_part_is_noticed(export: Path, caplog: pytest.LogCaptureFixture) -> None:
+    with (export / "nodes.txt").open("a") as file:
+        file.write("9001\t0\t0\t0\n")
+    prs.read_part("ansys", ROTOR, units="m-N-kg-s", coordinates=str(export / "nodes.txt"))
+    assert "have no rows in sparse.full: constrained, or is it the list of another part?" in caplog.text

@@ -16,6 +16,7 @@ from prs_model.finite_elements import FiniteElementModel
 from prs_model.part_files import LabelledMatrices, NodeTable, full_model, read_text
 from prs_model.plugins import PartRequest, Reducer
 
+from ..meshes.mesh_agreement import check_against_mesh
 from ..tables.mtx import is_mtx, parse_mtx
 from .full_file import is_full, load_full, read_full
 from .harwell_boeing import parse_harwell_boeing
@@ -50,8 +51,8 @@ class AnsysReducer(Reducer[AnsysOptions]):
     """Source: a .full file (K, M and rows in one), or a stiffness of ``*EXPORT,..,MMF`` or HBMAT with `mass` and `map`.
 
     DOFs are in the nodes' own axes, which are turned to the body's where `coordinates` has their angles. DOFs that were
-    constrained have no rows: such a part is held to the ground, and no check sees its rows in another order; export it
-    free and clamp it here.
+    constrained have no rows: such a part is held to the ground, and rows in another order show only against the
+    elements of an archive; else export it free and clamp it here.
     """
 
     description: ClassVar[str] = "ANSYS: .full, or Matrix Market and Harwell-Boeing exports, with a list of nodes"
@@ -69,7 +70,10 @@ class AnsysReducer(Reducer[AnsysOptions]):
         matrices, held = read_full(part.path) if is_full(part.path) else (self._exported(part), np.zeros(0, dtype=int))
         _warn_of_strangers(table, np.concatenate([matrices.nodes, held]), part.path)
         sets = {name: table.places(np.array(nodes), table.source) for name, nodes in listed.components.items()}
-        return full_model(matrices, table, units, node_sets=sets)
+        model = full_model(matrices, table, units, node_sets=sets)
+        if listed.mesh is not None:
+            check_against_mesh(model, listed.mesh, matrices)
+        return model
 
     def files(self, part: PartRequest[AnsysOptions]) -> tuple[Path, ...]:
         """The source, then the files that the options name."""

@@ -14,6 +14,9 @@ from prs_model.errors import PartFileError, short
 from prs_model.part_files import NodeTable, read_text
 from prs_model.part_files.text import number, whole_number
 
+from ..meshes.labelled_mesh import LabelledMesh
+from .archive_mesh import mesh_of
+
 LENGTHS = {"UMKS": "um", "CGS": "cm", "BFT": "ft"}
 SYSTEMS = {
     name: Units.parse(said)
@@ -34,12 +37,14 @@ class NodeList:
     """Nodes, with their axes where these are rotated; node components of an archive by name; what its units are.
 
     length: m, mm .. where a heading of Workbench or /UNITS of an archive says it. units: where /UNITS says all of them.
+    mesh: of an archive's elements, where matrices can be held against it.
     """
 
     table: NodeTable
     components: dict[str, tuple[int, ...]]
     length: str | None
     units: Units | None
+    mesh: LabelledMesh | None = None
 
     def check_units(self, said: Units) -> None:
         """Raises PartFileError when the file says others."""
@@ -66,7 +71,8 @@ def read_nodes(path: Path) -> NodeList:
     angles = table[:, 4:]
     frames = np.array([rotated_axes(each) for each in angles]) if np.any(angles) else None
     nodes = NodeTable(path, table[:, 0].astype(np.int64), table[:, 1:4], frames)
-    return NodeList(nodes, _components(lines, len(rows), path), *_units(text))
+    mesh = mesh_of(lines, nodes) if blocks else None
+    return NodeList(nodes, _components(lines, len(rows), path), *_units(text), mesh)
 
 
 def _units(text: str) -> tuple[str | None, Units | None]:
