@@ -18,6 +18,7 @@ from prs_model.testing.element import plain_element
 from prs_reducers.ansys import load_full
 from prs_reducers.meshes.mesh_file import TetrahedralMesh
 from tests.meshes import STEEL, box, steel, write
+from tests.reducers.decks import BAR_MASS, write_bar
 from tests.reducers.writers.ansys import FOOT, ROTOR, back, listing, market, places_of
 from tests.reducers.writers.extdb import write_extdb
 from tests.reducers.writers.openfast import flex
@@ -117,6 +118,11 @@ def _abaqus(folder: Path, mesh: TetrahedralMesh) -> Sample:
     for name, matrix in (("STIF1", model.stiffness), ("MASS1", model.mass)):
         (folder / f"part_{name}.mtx").write_text("".join(entries(matrix, 1e-3)))
     return Sample("abaqus", folder / "part_STIF1.mtx", MM, {"mesh": "part.inp"}, SIDES, mass=MASS, unseen=ANY_SET)
+
+
+def abaqus_beams(folder: Path) -> Sample:
+    """Rows with labels, rotations among them, which the mass file may leave out."""
+    return Sample("abaqus", write_bar(folder), "m-N-kg-s", {}, SIDES, mass=BAR_MASS, unseen=ANY_NUMBER | UNCOUNTED)
 
 
 def matrix_market(folder: Path) -> Sample:
@@ -281,7 +287,7 @@ def extptfm(folder: Path) -> Sample:
 
 
 OWN: tuple[Callable[[Path], Sample], ...] = (
-    npz, gmsh, gmsh_text, solid_deck, calculix, abaqus, matrix_market, matrix_market_of_others,
+    npz, gmsh, gmsh_text, solid_deck, calculix, abaqus, abaqus_beams, matrix_market, matrix_market_of_others,
     dmig, dmig_of_others, op4, extdb, samcef, openfast, ansys_export,
 )  # fmt: skip
 REAL: tuple[Callable[[Path], Sample], ...] = (outboard, nas2cam, ansys_full, subdyn, extptfm)

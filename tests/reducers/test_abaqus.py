@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -16,8 +15,8 @@ import prs_model as prs
 from prs_model.description.units import Units
 from prs_model.finite_elements import FiniteElementModel
 from prs_model.reduction import SuperElement
-from tests.meshes import STEEL, box, steel
-from tests.reducers.decks import write_deck, write_labelled, write_user_element
+from tests.meshes import box, steel
+from tests.reducers.decks import BAR_MASS, write_bar, write_deck, write_labelled, write_user_element
 from tests.superelements import DATA, needs_data, reference
 
 UNITS = "mm-N-tonne-s"
@@ -25,12 +24,6 @@ MESH = box((0.4, 0.1, 0.06), (4, 1, 1))
 MODEL = steel(MESH)
 LABELS = 7 + 3 * np.random.default_rng(1).permutation(len(MESH.points))
 ENDS = {"root": {"set": "Nx0"}, "tip": {"set": "Nx1"}}
-FRAME = {
-    "nodes": {"root": (0.0, 0.0, 0.0), "tip": (0.6, 0.0, 0.0)},
-    "sections": {"bar": {"kind": "rectangle", "y": 0.02, "z": 0.03, "material": STEEL}},
-    "members": ({"between": ("root", "tip"), "section": "bar", "elements": 6},),
-}
-ORDER = [1, *range(3, 8), 2]  # its nodes along the bar: both ends come first
 # N/mm and t from N/m and kg
 STIFFNESS, MASS = MODEL.stiffness.toarray() / 1e3, MODEL.mass.toarray() / 1e3
 
@@ -176,20 +169,17 @@ def test_a_substructure_is_a_super_element(tmp_path):
 
 def test_a_mass_file_cut_short_is_seen_in_a_frame_of_beams_too(tmp_path):
     """Nodes without rows in the mass file could be massless; those of beams are not."""
-    frame = prs.read_part("beam", options=FRAME)
-    assert isinstance(frame, FiniteElementModel)
-    labels = np.arange(1, len(frame.coordinates) + 1)
-    members = "".join(f"{i + 1}, {a}, {b}\n" for i, (a, b) in enumerate(pairwise(ORDER)))
-    points = [f"{label}, {x}, {y}, {z}\n" for label, (x, y, z) in zip(labels, frame.coordinates, strict=True)]
-    (tmp_path / "job.inp").write_text(f"*NODE\n{''.join(points)}*ELEMENT, TYPE=B31\n{members}")
-    write_labelled(tmp_path / "job_MASS1.mtx", frame.mass.toarray(), frame, labels)
-    source = write_labelled(tmp_path / "job_STIF1.mtx", frame.stiffness.toarray(), frame, labels)
-    assert read(source, "m-N-kg-s").mass_properties().mass == pytest.approx(7850.0 * 0.02 * 0.03 * 0.6, rel=1e-12)
+    source = write_bar(tmp_path)
+    assert read(source, "m-N-kg-s").mass_properties().mass == pytest.approx(BAR_MASS, rel=1e-12)
     mass = tmp_path / "job_MASS1.mtx"
     lines = mass.read_text().splitlines(keepends=True)
-    mass.write_text("".join(lines[: len(lines) // 2]))
-    with pytest.raises(prs.PartFileError, match="rows of elements with mass have none, the first at node"):
-        read(source, "m-N-kg-s")
+    for kept, message in (
+        (len(lines) // 2, "rows of elements with mass have none, the first at node"),
+        (-1, "the mass between 2 uy and 7 rz is more than their own allow"),
+    ):
+        mass.write_text("".join(lines[:kept]))
+        with pytest.raises(prs.PartFileError, match=message):
+            read(source, "m-N-kg-s")
 
 
 def test_constraints_may_move_mass_along_one_axis(tmp_path):

@@ -17,6 +17,8 @@ RESISTING = 1e-7
 """A row's force in rigid motion, over the sum of its terms' sizes, that is more than round-off of the file's digits."""
 UNEQUAL = 1e-9
 """A difference between a mass along x and y, over the nodes' own, that is more than round-off of the file's digits."""
+TOO_MUCH = 1e-6
+"""What a mass between two motions may exceed their own by: digits of the file, turned into other axes."""
 FEW = 30
 """Rows that one damaged number or line can reach."""
 
@@ -25,9 +27,11 @@ def check_against_mesh(model: FiniteElementModel, mesh: LabelledMesh, matrices: 
     """Raises PartFileError for a row of a solid that no solid has.
 
     A row without stiffness or mass; nodes that act on each other without a common element; a mass that differs along
-    x, y and z; rigid motion that costs energy where no held node is near. A shell or beam without mass is refused too.
+    x, y and z; rigid motion that costs energy where no held node is near. Shells and beams must have mass too, and no
+    mass between two motions may exceed their own.
     """
     _check_complete(model, mesh, matrices)
+    _check_kinetic_energy(model, mesh, matrices)
     _check_neighbours(model, mesh, matrices)
     _check_mass(model, mesh, matrices)
     _check_rows_far_from_held(model, mesh, matrices)
@@ -45,7 +49,7 @@ def missing_rows(matrices: LabelledMatrices, mesh: LabelledMesh) -> IntArray:
 
 def sentence_of(pairs: IntArray, mesh: LabelledMesh) -> str:
     """The first few of (node, 0..5) pairs, as ``10 uy, 14 uz ..``."""
-    names = [f"{mesh.table.labels[node]} {AXES[component]}" for node, component in pairs[:4]]
+    names = [_motion(pair, mesh) for pair in pairs[:4]]
     return short(", ".join(names)) + (" .." if len(pairs) > 4 else "")
 
 
@@ -66,6 +70,24 @@ def _check_complete(model: FiniteElementModel, mesh: LabelledMesh, matrices: Lab
                 f"{len(empty)} rows of elements with {name} have none, the first at node {label}: the {name} file is "
                 "truncated, or of another part",
             )
+
+
+def _check_kinetic_energy(model: FiniteElementModel, mesh: LabelledMesh, matrices: LabelledMatrices) -> None:
+    """No two motions together have negative kinetic energy: m_ij^2 <= m_ii m_jj."""
+    own, entries = np.sqrt(np.maximum(model.mass.diagonal(), 0.0)), model.mass.tocoo()
+    rows, columns = entries.coords
+    wrong = np.flatnonzero(np.abs(entries.data) > (1.0 + TOO_MUCH) * own[rows] * own[columns])
+    if len(wrong):
+        one, other = (_motion(model.dofs[at[wrong[0]]], mesh) for at in (rows, columns))
+        raise PartFileError(
+            matrices.source,
+            f"the mass between {one} and {other} is more than their own allow: a number or line of the mass file is "
+            "damaged or missing",
+        )
+
+
+def _motion(dof: IntArray, mesh: LabelledMesh) -> str:
+    return f"{mesh.table.labels[dof[0]]} {AXES[dof[1]]}"
 
 
 def _check_neighbours(model: FiniteElementModel, mesh: LabelledMesh, matrices: LabelledMatrices) -> None:
