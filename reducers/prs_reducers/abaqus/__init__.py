@@ -46,7 +46,8 @@ class AbaqusReducer(Reducer[AbaqusOptions]):
         """Read full matrices with their deck, or those of a substructure.
 
         FORMAT=COORDINATE does not label its rows: they are taken to be those of the nodes in the deck's order, with
-        three or six motions each, which the physics gate then asks for. Raises PartFileError.
+        three or six motions each, which physics then confirms, except for shells and beams that are held. Motions held
+        by 1e36 must be those that the deck holds. Raises PartFileError.
         """
         stiffness, mass, mesh = _paths(part)
         text = read_text(stiffness)
