@@ -13,11 +13,11 @@ import prs_model as prs
 from prs_model import plugins
 from prs_model.testing import Sample, as_text, conformance, damage, damage_table
 from prs_model.testing.element import plain_element
-from prs_model.testing.receptance import difference, first_eigenvalue, receptances
+from prs_model.testing.receptance import Whole, difference, first_eigenvalue, receptances
 from prs_model.testing.variants import variants
 
 CODE = '''
-import os, signal, sys, time
+import logging, os, signal, sys, time
 import numpy as np
 from prs_model import PartFileError, Reducer
 from prs_model.description.schema import Section
@@ -55,6 +55,22 @@ class Crashing(Sound):
 class Raising(Sound):
     def odd(self, part, words):
         return words[10]
+
+class Chatty(Careless):
+    def odd(self, part, words):
+        logging.getLogger("prs_model").warning("modes 3 and 4 are a pair")
+        return super().odd(part, words)
+
+class Misplacing(Sound):
+    writes = (".txt",)
+
+    def write(self, element, path, units):
+        path.write_text("7 7 end")
+
+    def read(self, part):
+        element = super().read(part)
+        written = element.mass[0, 0] > 10.0
+        return replace(plain_element(), positions=1000.0 * element.positions) if written else element
 
 class Hanging(Sound):
     def odd(self, part, words):
@@ -138,6 +154,7 @@ def test_a_sound_reducer_passes(sample: Callable[[str], Sample]) -> None:
         ("printing", ["nothing_is_printed"]),
         ("changing", ["files_stay_as_they_are"]),
         ("undocumented", ["options_are_documented"]),
+        ("misplacing", ["what_is_written_reads_back"]),
     ],
 )
 def test_each_fault_fails_its_check_only(sample: Callable[[str], Sample], name: str, promises: list[str]) -> None:
@@ -163,8 +180,9 @@ def test_faults_that_show_in_several_checks(sample: Callable[[str], Sample], nam
     ("name", "result", "said"),
     [
         ("careless", "wrong", "differs by"),
+        ("chatty", "wrong", "differs by"),
         ("crashing", "crash", "SIGSEGV"),
-        ("raising", "crash", "Error: "),
+        ("raising", "crash", "report it to its author"),
         ("greedy", "memory", "more memory"),
     ],
 )
@@ -193,6 +211,11 @@ def test_what_nothing_can_notice_is_said_with_its_reason(sample: Callable[[str],
 def test_a_sample_that_is_no_good_is_said_to_be(sample: Callable[[str], Sample]) -> None:
     heavier = replace(sample("sound"), mass=3.6)
     assert failing(heavier) == ["figures_are_as_stated"]
+    rigid = Sample("rigid", options={"mass": 1.0, "nodes": {"a": (0.0, 0.0, 0.0)}}, interfaces={"a": {}}, mass=1.0)
+    assert failing(rigid) == []
+    for stated in ((1234.5,), (1.0, 2.0)):  # a rigid body has none
+        assert failing(replace(rigid, free=stated)) == ["figures_are_as_stated"]
+        assert failing(replace(rigid, fixed=stated)) == ["figures_are_as_stated"]
     lost = replace(sample("sound"), interfaces={"a": {"node": "12"}})
     with pytest.raises(prs.PrsError, match=r"the undamaged sample cannot be read: .*found '12'"):
         damage_table(lost)
@@ -218,6 +241,17 @@ def test_receptances_know_a_part_by_its_answers() -> None:
     stiffness = element.stiffness.copy()
     stiffness[-1, -1] *= 1.001
     assert difference(receptances(replace(element, stiffness=stiffness), eigenvalue), own) > 1e-6
+
+
+@pytest.mark.parametrize(
+    "change",
+    [{"positions": 1000.0 * plain_element().positions}, {"grounded": True}, {"n_modes": 1}],
+    ids=["places", "ground", "modes"],
+)
+def test_a_part_is_its_places_and_its_kind_too(change: dict[str, object]) -> None:
+    whole = Whole(plain_element())
+    assert whole.difference(plain_element()) == 0.0
+    assert whole.difference(replace(plain_element(), **change)) > 1.0
 
 
 @pytest.mark.parametrize("content", [b"node 1 0.5\nnode 2 1.5\nend\n" * 10, bytes(range(256)) * 4])
