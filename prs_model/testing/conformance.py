@@ -19,13 +19,11 @@ from ..reduction.summary import summarize
 from .damage import as_text, damage_table, read_apart
 from .element import plain_element
 from .pipes import standard_output_to
-from .receptance import difference, first_eigenvalue, receptances
+from .receptance import ALIKE, Whole
 from .sample import Sample, figures
 from .variants import ANOTHER_KIND, PROSE
 
 Promise = Callable[[Sample], None]
-
-ALIKE = 1e-8
 
 
 @dataclass(frozen=True)
@@ -236,15 +234,18 @@ def _require(truth: bool, found: str) -> None:
 
 
 def _close(what: str, found: np.ndarray, expected: object, accuracy: float) -> None:
-    if not np.allclose(found, np.asarray(expected), rtol=accuracy, atol=0.0):
+    wanted = np.asarray(expected)
+    if np.shape(found) != wanted.shape or not np.allclose(found, wanted, rtol=accuracy, atol=0.0):
         raise AssertionError(f"{what}: {found}, expected {expected} to {accuracy:g}")
 
 
 def _same(found: SuperElement, expected: SuperElement) -> None:
-    _require(sorted(found.nodes) == sorted(expected.nodes), f"nodes {found.nodes}, expected {expected.nodes}")
-    eigenvalue = first_eigenvalue(expected)
-    apart = difference(receptances(found, eigenvalue), receptances(expected, eigenvalue))
-    _require(apart <= ALIKE, f"receptances that differ by {apart:.1e}")
+    for what in ("nodes", "n_modes", "grounded"):
+        one, other = getattr(found, what), getattr(expected, what)
+        alike = sorted(one) == sorted(other) if what == "nodes" else one == other
+        _require(alike, f"{what} {one}, expected {other}")
+    apart = Whole(expected).difference(found)
+    _require(apart <= ALIKE, f"places or receptances that differ by {apart:.1e}")
 
 
 def _contents(folder: Path) -> dict[str, str]:

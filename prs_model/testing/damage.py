@@ -32,9 +32,9 @@ class Outcome:
     """What became of one damage to one file.
 
     result: refused with a message; same: read, and the part is the undamaged one to six digits; noticed: read, with a
-    warning; unseen: another part, which nothing can notice, as the sample says with the reason; wrong: another part,
-    silently; crash, hang, memory: what no reader may do. difference: of the part from the undamaged one, where it was
-    read, as receptances.
+    warning about its figures; unseen: another part, which nothing can notice, as the sample says with the reason;
+    wrong: another part, silently; crash, hang, memory: what no reader may do. difference: of the part from the
+    undamaged one, where it was read, as receptances.
     """
 
     file: str
@@ -84,7 +84,7 @@ def as_text(outcomes: Sequence[Outcome]) -> str:
 
 
 def read_apart(whole: Sample, damaged: Sequence[Sample]) -> list[dict[str, Any]]:
-    """What a process of its own says of each: result, message, and of what is read difference and warnings."""
+    """What a process of its own says of each: result, message, and of what is read difference and surprises."""
     samples = [whole, *damaged]
     task = {"jobs": [_plain(sample) for sample in samples], "seconds": SECONDS, "memory": MEMORY}
     environment = os.environ | {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
@@ -153,16 +153,16 @@ def _plain(sample: Sample) -> dict[str, Any]:
 def _outcome(trial: _Trial, answer: Mapping[str, Any], sample: Sample) -> Outcome:
     result, message, difference = answer["result"], answer["message"], float(answer.get("difference", 0.0))
     if result == "read":
-        result, message = _as_read(trial.name, difference, answer["warnings"], INCHES | dict(sample.unseen))
+        result, message = _as_read(trial.name, difference, answer["surprises"], INCHES | dict(sample.unseen))
     message = " ".join(message.replace(f"{Path(trial.sample.path).parent}{os.sep}", "").split())
     return Outcome(trial.file, trial.damage, result, message, float(answer["seconds"]), difference)
 
 
-def _as_read(name: str, difference: float, warnings: Sequence[str], unseen: Mapping[str, str]) -> tuple[Result, str]:
+def _as_read(name: str, difference: float, surprises: Sequence[str], unseen: Mapping[str, str]) -> tuple[Result, str]:
     if difference <= SAME:
         return "same", ""
-    if warnings:
-        return "noticed", warnings[0]
+    if surprises:
+        return "noticed", surprises[0]
     far = f"differs by {difference:.1e}"
     reasons = [reason for pattern, reason in unseen.items() if fnmatchcase(name, pattern)]
     return ("unseen", f"{far}: {reasons[0]}") if reasons else ("wrong", far)

@@ -8,6 +8,7 @@ from ..arrays import FloatArray
 from ..reduction import SuperElement
 from ..reduction.summary import summarize
 
+ALIKE = 1e-8
 SHIFTS = (1.0, 100.0)  # of the first elastic eigenvalue
 
 
@@ -42,3 +43,29 @@ def difference(found: FloatArray, expected: FloatArray) -> float:
     scale = own[:, :, None] * own[:, None, :]
     apart = np.abs(found - expected)
     return float(np.max(np.divide(apart, scale, out=apart, where=scale > 0.0), initial=0.0))
+
+
+class Whole:
+    """A part that others are compared with, which should be the same."""
+
+    def __init__(self, element: SuperElement):
+        self.kind = _kind(element)
+        self.positions = _positions(element)
+        self.eigenvalue = first_eigenvalue(element)
+        self.receptances = receptances(element, self.eigenvalue)
+
+    def difference(self, element: SuperElement) -> float:
+        """Of places, relative to the part's size, and receptances; infinite for other nodes, modes or ground."""
+        if _kind(element) != self.kind:
+            return float("inf")
+        size = float(np.ptp(self.positions, axis=0).max(initial=0.0)) or 1.0
+        moved = float(np.max(np.abs(_positions(element) - self.positions), initial=0.0)) / size
+        return max(moved, difference(receptances(element, self.eigenvalue), self.receptances))
+
+
+def _kind(element: SuperElement) -> tuple[list[str], int, bool]:
+    return sorted(element.nodes), element.n_modes, element.grounded
+
+
+def _positions(element: SuperElement) -> FloatArray:
+    return element.positions[np.argsort(element.nodes)]
