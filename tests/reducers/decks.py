@@ -71,3 +71,10 @@ def write_user_element(path: Path, stiffness: FloatArray, mass: FloatArray | Non
                 lines += [",".join(entries[i : i + 4]) for i in range(0, len(entries), 4)]
     path.write_text("\n".join(lines) + "\n")
     return path
+
+
+def changed(path: Path, old: str, new: str) -> None:
+    """Put `new` where `old` stands first in a file."""
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new, 1))
