@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
     from .modes import Modes
     from .reduction import SuperElement, TravellingElement
     from .synthesis import System
+
+_log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -82,10 +85,31 @@ class Machine:
         return self.kinematics.solve({**self.reference_pose, **pose})
 
     def assemble(self, configuration: Configuration | None = None) -> System:
-        """The synthesised system in a configuration (default: the reference)."""
+        """The synthesised system in a configuration (default: the reference).
+
+        Joints whose ends lie apart are warned of, once for each machine.
+        """
         from .synthesis import assemble
 
+        _ = self._warned
         return assemble(self.description, self.parts, self.joints, configuration or self.configuration())
+
+    def wide_joints(self) -> tuple[str, ...]:
+        """A sentence for each joint whose ends lie apart in the reference configuration, which is seldom meant."""
+        from .synthesis import wide_joints
+
+        joints = self.description.joints
+        gaps = wide_joints(self.description, self.parts, self.joints, self.configuration())
+        return tuple(
+            f"joint '{name}': its ends {' and '.join(joints[name].between)} lie {1e3 * gap:.4g} mm apart; "
+            "check 'at', the node positions, the body's frame and the units of its file"
+            for name, gap in gaps.items()
+        )
+
+    @cached_property
+    def _warned(self) -> None:
+        for sentence in self.wide_joints():
+            _log.warning("%s", sentence)
 
     def modes(self, count: int = 8, /, **pose: float) -> Modes:
         """The lowest natural modes at a pose."""

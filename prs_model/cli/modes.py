@@ -7,10 +7,11 @@ import logging
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..machine import Machine, load_machine
+from ..machine import Machine
 from ..readable import pose_text, readable, readable_range
+from . import machine_argument
 from .table import table
-from .values import assignment, dimension_of, pose_from, settings_from, unit_of
+from .values import assignment, dimension_of, pose_from, positive, unit_of
 
 if TYPE_CHECKING:
     from ..kinematics import Configuration
@@ -35,24 +36,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="NAME=VALUE",
         help="such as nutation=10deg z=1275mm; bare numbers are m and rad; default: the reference pose",
     )
-    parser.add_argument("-n", "--count", type=_positive, default=8, help="how many modes (default 8)")
-    parser.add_argument(
-        "--set",
-        dest="settings",
-        action="append",
-        type=assignment,
-        default=[],
-        metavar="PATH=VALUE",
-        help="change an entry of the description, such as joints.P.drive.nut=1.0e5 (may be repeated)",
-    )
+    parser.add_argument("-n", "--count", type=positive, default=8, help="how many modes (default 8)")
+    machine_argument.add_settings(parser)
     parser.add_argument("--picture", type=Path, metavar="FILE", help="draw the mode shapes (.png, .svg or .pdf)")
 
 
 def run(options: argparse.Namespace) -> dict[str, Any]:
     """Solve, and draw where asked."""
-    machine = load_machine(options.machine)
-    if options.settings:
-        machine = machine.replace(settings_from(options.settings))
+    machine = machine_argument.changed(options)
     if options.picture is not None:
         from ..modes.picture import check_picture_file
 
@@ -125,13 +116,3 @@ def _warn_outside_workspace(machine: Machine, configuration: Configuration) -> N
             kind = machine.kinematics.task.coordinates[name]
             found, bounds = readable(value, kind), readable_range(low, high, kind)
             _log.warning("pose is outside the stated workspace: %s %s, workspace %s", name, found, bounds)
-
-
-def _positive(text: str) -> int:
-    try:
-        value = int(text)
-    except ValueError:
-        value = 0
-    if value < 1:
-        raise argparse.ArgumentTypeError(f"found '{text}', expected a whole number above zero")
-    return value

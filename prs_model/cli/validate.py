@@ -6,11 +6,11 @@ import argparse
 from typing import TYPE_CHECKING, Any
 
 from ..description import json_schema
-from ..machine import Machine, load_machine
-from ..synthesis import wide_joints
+from ..machine import Machine
+from ..synthesis import assemble
+from . import machine_argument
 
 if TYPE_CHECKING:
-    from ..kinematics import Configuration
     from ..modes import Modes
 
 NAME = "validate"
@@ -23,6 +23,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     one = parser.add_mutually_exclusive_group(required=True)
     one.add_argument("machine", nargs="?", help="installed name, machine.yaml or its folder")
     one.add_argument("--schema", action="store_true", help="print the JSON schema of machine.yaml for editors")
+    machine_argument.add_settings(parser)
 
 
 def run(options: argparse.Namespace) -> dict[str, Any]:
@@ -30,7 +31,7 @@ def run(options: argparse.Namespace) -> dict[str, Any]:
     if options.schema:
         options.json = True
         return json_schema()
-    return _card(load_machine(options.machine))
+    return _card(machine_argument.changed(options))
 
 
 def show(outcome: dict[str, Any]) -> str:
@@ -49,14 +50,13 @@ def _mass(body: dict[str, Any]) -> str:
 
 
 def _card(machine: Machine) -> dict[str, Any]:
-    configuration = machine.configuration()
-    system = machine.assemble(configuration)
+    system = assemble(machine.description, machine.parts, machine.joints, machine.configuration())
     modes = system.modes(system.size)
     return {
         "machine": machine.name,
         "title": machine.description.file.title,
         "valid": True,
-        "warnings": [*_unheld(machine), *_wide(machine, configuration), *_free(modes)],
+        "warnings": [*_unheld(machine), *machine.wide_joints(), *_free(modes)],
         "coordinates": system.size,
         "first_frequency_hz": float(modes.frequencies[0]),
         "bodies": {
@@ -74,16 +74,6 @@ def _unheld(machine: Machine) -> list[str]:
     held = {end.split(".")[0] for joint in machine.description.joints.values() for end in joint.between}
     loose = [name for name, body in machine.description.bodies.items() if name not in held and not body.grounded]
     return [f"body '{name}' is held by no joint" for name in loose]
-
-
-def _wide(machine: Machine, configuration: Configuration) -> list[str]:
-    gaps = wide_joints(machine.description, machine.parts, machine.joints, configuration)
-    joints = machine.description.joints
-    return [
-        f"joint '{name}': its ends {' and '.join(joints[name].between)} lie {1e3 * gap:.4g} mm apart; "
-        "check 'at', the node positions, the body's frame and the units of its file"
-        for name, gap in gaps.items()
-    ]
 
 
 def _free(modes: Modes) -> list[str]:

@@ -68,6 +68,12 @@ def test_the_picture_is_written_whole(capsys: pytest.CaptureFixture[str], tmp_pa
         (["modes", "hexapod", "--pose", "z=5m"], "z"),
         (["modes", "hexapod", "--set", "bodies.plattform.options.mass=2"], "platform"),
         (["modes", "hexapod", "--set", "bodies.platform.options.mass=-2"], "above zero"),
+        (["modes", "hexapod", "--set", "bodies.platform=@none.yaml"], "none.yaml: cannot be read"),
+        (
+            ["validate", "hexapod", "--set", "bodies.platform={a: "],
+            "--set bodies.platform: found '{a: ': not valid YAML",
+        ),
+        (["reducers", "sold"], "Did you mean 'solid'?"),
         (["modes", "hexapod", "--picture", "modes.bmp"], "expected one of .png"),
         (["modes", "hexapod", "--picture", 300 * "x" + ".png"], "x.png: cannot be written ("),
         (["modes", "hexapod", "--picture", "/proc/modes.png"], "/proc/modes.png: cannot be written ("),
@@ -171,3 +177,55 @@ def test_validate_warns_of_a_body_that_nothing_holds(capsys: pytest.CaptureFixtu
     held, free = json.loads(out)["warnings"]
     assert held == "body 'loose' is held by no joint"
     assert free.startswith("6 of the modes have no frequency, loose moving freely")
+
+
+APART = (
+    "joint 'ram': its ends bridge.beam and ram.slide lie 20 mm apart; check 'at', the node positions, the body's frame"
+)
+
+
+def test_ends_that_lie_apart_are_warned_of_wherever_they_matter(capsys: pytest.CaptureFixture[str]) -> None:
+    moved = ["--set", "bodies.ram.options.nodes.slide=[20, 0, 100]"]
+    assert APART in run(capsys, "modes", str(GANTRY), *moved)[2]
+    status, out, err = run(capsys, "validate", "-q", str(GANTRY), *moved)
+    assert (status, err) == (0, "")
+    assert f"warning: {APART}" in out
+    assert "apart" not in run(capsys, "modes", str(GANTRY))[2]
+
+
+def test_a_machine_warns_of_them_once(caplog: pytest.LogCaptureFixture) -> None:
+    machine = prs.load_machine(GANTRY).replace({"bodies.ram.options.nodes.slide": (20.0, 0.0, 100.0)})
+    for _ in range(2):
+        machine.modes(1)
+    assert [message.startswith(APART) for message in caplog.messages if "apart" in message] == [True]
+
+
+def test_a_body_comes_from_a_file(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    platform = prs.load_machine("hexapod").description.raw["bodies"]["platform"]
+    heavy = {**platform, "options": {**platform["options"], "mass": 4.0}}
+    (tmp_path / "heavy.yaml").write_text(json.dumps(heavy))
+    found = [
+        json.loads(run(capsys, "modes", "hexapod", "--json", "--set", setting)[1])["frequencies_hz"]
+        for setting in (f"bodies.platform=@{tmp_path / 'heavy.yaml'}", "bodies.platform.options.mass=4")
+    ]
+    assert found[0] == found[1]
+    assert found[0] != prs.load_machine("hexapod").modes(6).frequencies.tolist()
+
+
+def test_a_reducer_shows_what_it_takes(capsys: pytest.CaptureFixture[str]) -> None:
+    _, out, _ = run(capsys, "reducers", "beam", "--json")
+    known = json.loads(out)
+    kinds = {(each["name"], each["kind"], each["default"]) for each in known["options"]}
+    assert kinds >= {
+        ("nodes", "{name: [m, m, m]}", "required"),
+        ("sections.<name>.kind", "round", "required"),
+        ("sections.<name>.bore", "m", ""),
+        ("sections.<name>.material.E", "N/m^2", "required"),
+        ("members[].elements", "whole number", "8"),
+    }
+    assert (known["gives"], known["needs_source"], known["writes"]) == ("full", False, [])
+    _, out, _ = run(capsys, "reducers", "nastran")
+    for words in ("writes             .op4, .pch", "modal_basis: whether", "fixed-interface | other", "--units"):
+        assert words in out
+    assert "springs[].stiffness" in (shown := run(capsys, "reducers", "lumped")[1])
+    assert "6 x 6 numbers" in shown
