@@ -1,4 +1,4 @@
-"""From the words of an interface (a set, labels, a box, a cylinder) to the nodes it means."""
+"""From the words of an interface (a set, labels, a box, a cylinder, a plane) to the nodes it means."""
 
 from __future__ import annotations
 
@@ -16,6 +16,8 @@ from ..errors import PartFileError
 Mask = BoolArray
 
 MOST_LISTED = 30  # labels in a message
+LENGTHS = "lengths are in m in Python and on the command line, and in its own units in machine.yaml"
+PLACES = ("box", "cylinder", "plane")
 SLACK = 1e-6  # of the part's size: nodes this close to the face of a box count as inside
 
 
@@ -44,18 +46,32 @@ def select(
     """Node indices (m,) and weights (m,) that a selection means; several ways of naming them are intersected.
 
     Weights are nodal areas [m^2]: those of the selected set where it has them, else those of the outer surface; all are
-    zero when no area is known. shift: how far boxes and cylinders have moved [m]. Nodes without DOFs (clamped ones) are
+    zero when no area is known. shift: how far boxes, cylinders and planes have moved [m]. Nodes without DOFs (clamped ones) are
     left out. Raises PartFileError naming `entry` when a set or label is unknown or nothing is left, with what each part
     of the selection found.
     """
     masks = dict(_masks(model, selection, np.asarray(shift, dtype=float), entry))
     if not masks:
-        raise PartFileError(model.source, f"{entry}: no nodes named, expected one of set, nodes, box, cylinder, plane")
+        raise PartFileError(model.source, f"{entry}: {_no_words(model, entry.rpartition('.')[2])}")
     alive = np.any(model.rows >= 0, axis=1)
     chosen = np.flatnonzero(np.logical_and.reduce([alive, *masks.values()]))
     if not len(chosen):
         raise PartFileError(model.source, _nothing(model, masks, alive, entry))
     return chosen, _weights(model, selection, chosen)
+
+
+def listed_nodes(labels: Iterable[object]) -> str:
+    """Labels of nodes for a sentence; of very many, how many and which."""
+    known = [str(label) for label in labels]
+    return ", ".join(known) if len(known) <= MOST_LISTED else f"{len(known)} of them, {known[0]} to {known[-1]}"
+
+
+def _no_words(model: LabelledNodes, name: str) -> str:
+    nodes = [] if model.node_ids is None else [str(label) for label in model.node_ids]
+    meant = "{set: %s}" if name in model.node_sets else "{node: %s}" if name in nodes else ""
+    return "no nodes named, expected one of set, nodes, node, box, cylinder, plane" + (
+        f"; did you mean {meant % name}?" if meant else ""
+    )
 
 
 def unknown_set(model: LabelledNodes, name: str, entry: str) -> str:
@@ -75,7 +91,7 @@ def _masks(model: LabelledNodes, selection: Selection, shift: FloatArray, entry:
     slack = SLACK * float(np.ptp(model.coordinates, axis=0).max())
     points = model.coordinates - shift
     if selection.box is not None:
-        yield "box", _in_box(points, selection.box, slack)
+        yield f"box ({_limits(selection.box)})", _in_box(points, selection.box, slack)
     if selection.cylinder is not None:
         yield "cylinder", _on_cylinder(points, selection.cylinder, slack)
     if selection.plane is not None:
@@ -97,11 +113,15 @@ def _labelled(model: LabelledNodes, labels: tuple[NodeId, ...], entry: str) -> I
     missing = [label for label in labels if str(label) not in place]
     if missing:
         known = [str(label) for label in model.node_ids]
-        listed = ", ".join(known) if len(known) <= MOST_LISTED else f"{len(known)} of them, {known[0]} to {known[-1]}"
         near = did_you_mean(str(missing[0]), known) if len(known) <= MOST_LISTED else ""
-        expected = f"expected a node of the part ({listed}){near}"
+        expected = f"expected a node of the part ({listed_nodes(known)}){near}"
         raise PartFileError(model.source, f"{entry}: found node '{missing[0]}', {expected}")
     return np.array([place[str(label)] for label in labels], dtype=np.int64)
+
+
+def _limits(box: Box) -> str:
+    given = ((axis, getattr(box, axis)) for axis in "xyz")
+    return ", ".join(f"{axis} {limits[0]:g} to {limits[1]:g} m" for axis, limits in given if limits is not None)
 
 
 def _in_box(points: FloatArray, box: Box, slack: float) -> Mask:
@@ -143,9 +163,15 @@ def _nothing(model: LabelledNodes, masks: dict[str, Mask], alive: Mask, entry: s
     base = next(iter(masks.values()))
     points = model.coordinates[base] if len(masks) > 1 and np.any(base) else model.coordinates
     what = next(iter(masks)) if len(masks) > 1 and np.any(base) else "the part"
-    reach = f"from {_point(points.min(axis=0))} to {_point(points.max(axis=0))} m"
-    return f"{entry}: no node is in all of: {found}; {what} reaches {reach}"
+    where = f"no node is in all of: {found}; {what} reaches {reach(points)}"
+    return f"{entry}: {where}" + (f"; {LENGTHS}" if any(name.startswith(PLACES) for name in masks) else "")
 
 
-def _point(point: FloatArray) -> str:
-    return "(" + ", ".join(f"{x:.4g}" for x in point) + ")"
+def reach(points: FloatArray) -> str:
+    """From where to where points (n, 3) [m] reach, for a sentence."""
+    return f"from {point(points.min(axis=0))} to {point(points.max(axis=0))} m"
+
+
+def point(place: FloatArray) -> str:
+    """``(0.1, 0, 2)``."""
+    return "(" + ", ".join(f"{x:.4g}" for x in place) + ")"

@@ -19,6 +19,7 @@ from .interfaces import interface_ties
 from .recipe import Settings
 from .super_element import SuperElement, node_labels
 from .surface import decimate
+from .surprising_ties import warn_of_surprises
 
 
 def reduce_model(
@@ -33,6 +34,7 @@ def reduce_model(
             model.source, f"{model.name} has no interfaces: name at least one, to join the part to others"
         )
     ties = interface_ties(model, interfaces, settings)
+    warn_of_surprises(model, ties)
     return to_element(model, ties, craig_bampton(model, ties, settings.modes), grounded=grounded)
 
 

@@ -2,18 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..description.interface import Coupling, Interface, Member, Point, Selection
+from ..description.problems import did_you_mean, listed
+from ..errors import PartFileError
 from ..finite_elements import FiniteElementModel
-from ..finite_elements.selection import select
+from ..finite_elements.selection import listed_nodes, select
 from .coupling import Tie
 from .recipe import Settings
 
 STILL = np.zeros(3)
+
+
+def as_meant(
+    interfaces: Mapping[str, Interface], sets: Sequence[str], nodes: Sequence[str], source: str
+) -> dict[str, Interface]:
+    """Interfaces that were named by one word as what it is: a node set of the part, or else its node of that name.
+
+    Raises PartFileError for a word that is neither.
+    """
+    meant = {}
+    for name, interface in interfaces.items():
+        if (word := interface.named) is not None:
+            if word not in sets and word not in nodes:
+                known = f"a node set ({listed(sets)}) nor a node ({listed_nodes(nodes) if nodes else 'none'})"
+                message = f"found '{word}', which is neither {known}{did_you_mean(word, [*sets, *nodes])}"
+                raise PartFileError(source, f"interfaces.{name}: {message}")
+            interface = interface.model_copy(update={"named": None, "set" if word in sets else "node": word})
+        meant[name] = interface
+    return meant
 
 
 def interface_ties(
@@ -28,7 +49,8 @@ def interface_ties(
     of its members. A node stands at `at`, by default in the weighted centre of what it holds.
     """
     ties: list[Tie] = []
-    for name, interface in interfaces.items():
+    labels = [] if model.node_ids is None else [str(label) for label in model.node_ids]
+    for name, interface in as_meant(interfaces, list(model.node_sets), labels, model.source).items():
         moved = STILL if interface.travel is None else shift
         ties.extend(_ties(model, name, interface, settings, moved))
     return ties

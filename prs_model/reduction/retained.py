@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import permutations
 
 import numpy as np
 
@@ -13,8 +14,10 @@ from ..description.problems import did_you_mean
 from ..errors import PartFileError
 from ..finite_elements.rigid_motion import transfer
 from ..finite_elements.selection import select
+from .interfaces import as_meant
 from .recipe import Settings
 from .super_element import AXES, SuperElement, node_labels, present_motions
+from .surprising_ties import warn_of_distance
 
 
 def at_interfaces(
@@ -26,6 +29,7 @@ def at_interfaces(
     node, whose six coordinates replace theirs, or averaged, which adds a node and no coordinate. Raises PartFileError
     for a node the part does not have, one used twice, or an interface that cannot move in six ways.
     """
+    interfaces = as_meant(interfaces, list(element.node_sets), element.nodes, source)
     names: dict[str, str] = {}
     for name, interface in interfaces.items():
         if interface.travel is not None:
@@ -36,8 +40,9 @@ def at_interfaces(
             node = _one_node(element, name, interface, names, source)
             names[node] = name
     ties = [tie for name, each in interfaces.items() for tie in _ties(element, name, each, settings, source)]
-    for tie in ties:
-        element = _tied(element, tie, names, source)
+    _check(element, ties, names, source)
+    for tie in sorted(ties, key=lambda tie: tie.coupling == "rigid"):  # a rigid tie takes nodes that others average
+        element = _rigid(element, tie, source) if tie.coupling == "rigid" else _averaged(element, tie)
     return _renamed(replace(element, node_sets={}), names, source) if interfaces else element
 
 
@@ -49,6 +54,9 @@ class _Tie:
     nodes: tuple[str, ...]
     position: FloatArray
     coupling: Coupling
+
+    def indices(self, element: SuperElement) -> IntArray:
+        return np.array([element.node(node) for node in self.nodes])
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,8 +103,11 @@ def _ties(element: SuperElement, name: str, interface: Interface, settings: Sett
         return select(nodes, part.alone(), entry=entry)[0]
 
     def tie(node: str, at: tuple[float, ...] | None, indices: IntArray) -> _Tie:
-        position = element.positions[indices].mean(axis=0) if at is None else np.array(at, dtype=float)
-        return _Tie(node, tuple(element.nodes[index] for index in indices), position, coupling)
+        tied = element.positions[indices]
+        position = tied.mean(axis=0) if at is None else np.array(at, dtype=float)
+        warn_of_distance(source, node, position, tied, element.positions)
+        named = tuple(element.nodes[index] for index in indices)
+        return _Tie(node, named, position, "rigid" if len(indices) == 1 else coupling)
 
     groups = [chosen(each, f"{entry}.members[{each.name}]") for each in interface.members]
     if interface.members and settings.tie_of(interface) == "interface":
@@ -108,32 +119,45 @@ def _ties(element: SuperElement, name: str, interface: Interface, settings: Sett
         yield tie(name, interface.at, chosen(interface, entry))
 
 
-def _tied(element: SuperElement, tie: _Tie, names: Mapping[str, str], source: str) -> SuperElement:
-    taken = [node for node in tie.nodes if node in names or node not in element.nodes]
-    if taken and tie.coupling == "rigid":
-        other = names.get(taken[0], "another one")
-        raise PartFileError(source, f"interfaces.{tie.node}: node '{taken[0]}' belongs to interface {other} already")
-    indices = np.array([element.node(node) for node in tie.nodes])
-    arms = element.positions[indices] - tie.position
-    if not _can_turn(element.motions[indices], arms):
-        raise PartFileError(
-            source,
-            f"interfaces.{tie.node}: its {len(indices)} nodes lie on one line and cannot take up a rotation about it; "
-            "select nodes of a surface",
-        )
-    return _rigid(element, tie, indices, source) if tie.coupling == "rigid" else _averaged(element, tie, indices)
+def _check(element: SuperElement, ties: Sequence[_Tie], names: Mapping[str, str], source: str) -> None:
+    """As `coupling.check_ties` does for full models. Raises PartFileError."""
+    for tie in ties:
+        taken = [node for node in tie.nodes if node in names]
+        if taken and tie.coupling == "rigid":
+            message = f"node '{taken[0]}' belongs to interface {names[taken[0]]} already"
+            raise PartFileError(source, f"interfaces.{tie.node}: {message}")
+        if not _can_turn(element, tie):
+            message = "lie on one line and cannot take up a rotation about it; select nodes of a surface"
+            raise PartFileError(source, f"interfaces.{tie.node}: its {len(tie.nodes)} nodes {message}")
+    for one, other in permutations(ties, 2):
+        shared = [node for node in one.nodes if node in other.nodes]
+        if shared and one.coupling == other.coupling == "rigid":
+            message = (
+                f"share node '{shared[0]}', which cannot follow two rigid nodes at once; make the selections apart"
+            )
+            raise PartFileError(source, f"interfaces {one.node} and {other.node} {message}")
+        if (
+            one.coupling == "averaged"
+            and len(shared) == len(one.nodes)
+            and (other.coupling == "rigid" or len(shared) == len(other.nodes))
+        ):
+            message = f"is averaged over nodes that {other.node} moves already, so it repeats {other.node}"
+            raise PartFileError(source, f"interface {one.node} {message}; use one interface for both")
 
 
-def _can_turn(motions: FloatArray, arms: FloatArray) -> bool:
-    """Whether the translations (or, of one node, all motions) tell six rigid motions apart; arms (k, 3) [m]."""
-    wanted = transfer(arms)
+def _can_turn(element: SuperElement, tie: _Tie) -> bool:
+    """Whether its nodes' motions (averaged: translations) tell six rigid motions apart."""
+    indices, axes = tie.indices(element), 3 if tie.coupling == "averaged" else 6
+    arms = element.positions[indices] - element.positions[indices].mean(axis=0)
+    wanted = transfer(arms)[:, :axes]
     wanted[..., 3:] /= np.linalg.norm(arms, axis=1).max() or 1.0
-    rows = present_motions(motions, wanted)[1]
+    rows = present_motions(element.motions[indices, :axes], wanted)[1]
     return bool(np.linalg.matrix_rank(rows, tol=1e-6) == 6)
 
 
-def _rigid(element: SuperElement, tie: _Tie, indices: IntArray, source: str) -> SuperElement:
+def _rigid(element: SuperElement, tie: _Tie, source: str) -> SuperElement:
     """u = P u' with the tied nodes' coordinates replaced by the six of one node: u_j = X(r_j - r) q, eq. (4)-(6)."""
+    indices = tie.indices(element)
     rows, wanted = present_motions(element.motions[indices], transfer(element.positions[indices] - tie.position))
     own = np.flatnonzero(np.any(rows != 0.0, axis=0))
     if len(own) != np.linalg.matrix_rank(rows):
@@ -159,17 +183,16 @@ def _rigid(element: SuperElement, tie: _Tie, indices: IntArray, source: str) -> 
     )
 
 
-def _averaged(element: SuperElement, tie: _Tie, indices: IntArray) -> SuperElement:
-    """A node that moves as its nodes do on average: U = (X^T X)^-1 X^T u over their translations."""
-    motions = element.motions[indices, :3].reshape(-1, element.size)
-    arms = transfer(element.positions[indices] - tie.position)[:, :3].reshape(-1, 6)
-    there = np.any(motions != 0.0, axis=1)
-    average = np.linalg.lstsq(arms[there], motions[there], rcond=None)[0]
+def _averaged(element: SuperElement, tie: _Tie) -> SuperElement:
+    """A node that moves as its nodes do on average: U = (X^T X)^-1 X^T u over the translations that they have."""
+    indices = tie.indices(element)
+    arms = transfer(element.positions[indices] - tie.position)[:, :3]
+    motions, arms = present_motions(element.motions[indices, :3], arms)
     return replace(
         element,
         nodes=(tie.node, *element.nodes),
         positions=np.vstack([tie.position, element.positions]),
-        motions=np.concatenate([average[None], element.motions]),
+        motions=np.concatenate([np.linalg.lstsq(arms, motions, rcond=None)[0][None], element.motions]),
         node_sets={},
     )
 

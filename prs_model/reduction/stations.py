@@ -19,6 +19,7 @@ from .from_model import to_element
 from .interfaces import interface_ties
 from .recipe import Settings
 from .super_element import SuperElement
+from .surprising_ties import warn_of_surprises
 from .travelling import TravellingElement
 
 logger = logging.getLogger("prs_model")
@@ -51,6 +52,7 @@ def reduce_travelling(
     shifts = np.outer(stations, direction / np.linalg.norm(direction))
     ties, moving = _ties_by_station(model, interfaces, settings, name, shifts)
     _warn_of_gaps(model, ties[0], moving, shifts)
+    warn_of_surprises(model, ties[0])
     if travel.method == "stations":
         nodes = node_per_station(model, ties, moving, settings.modes, grounded)
         return TravellingElement(travel.joint, stations, nodes)

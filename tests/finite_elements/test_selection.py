@@ -59,8 +59,11 @@ def test_clamped_nodes_are_no_longer_there(model):
     [
         ({"set": "x0 "}, r"interfaces.a.set: found node set 'x0 ', expected one of x0, .*did you mean 'x0'"),
         ({"nodes": (7, 999999)}, r"interfaces.a.nodes: found node '999999', expected a node of the part \(\d+ of them"),
-        ({"set": "x0", "box": {"x": (0.1, 0.2)}}, r"set 'x0' \d+, box \d+; set 'x0' reaches from \(0, 0, 0\)"),
-        ({"box": {"x": (5.0, 6.0)}}, r"box 0; the part reaches from \(0, 0, 0\) to \(0.4, 0.2, 0.1\) m"),
+        ({"set": "x0", "box": {"x": (0.1, 0.2)}}, r"set 'x0' \d+, box \(.*\) \d+; set 'x0' reaches from \(0, 0, 0\)"),
+        (
+            {"box": {"x": (300.0, 400.0)}},
+            r"box \(x 300 to 400 m\) 0; the part reaches from \(0, 0, 0\) to \(0.4, 0.2, 0.1\) m; lengths are in m in",
+        ),
         ({}, "no nodes named"),
     ],
 )

@@ -1,5 +1,6 @@
 """Craig-Bampton with the boundary projected first, against slow and obvious twins on full matrices."""
 
+import re
 from dataclasses import replace
 from itertools import pairwise
 
@@ -266,3 +267,16 @@ def test_without_areas_all_nodes_weigh_the_same(model):
     end = Interface.model_validate({"members": halves})
     element = reduce_model(bare, {"end": end}, Settings("averaged", "joint", 0))
     assert element.positions[0] == pytest.approx([0.0, 0.05, 0.04], abs=0.001)
+
+
+def test_a_surprising_selection_is_noted(model, caplog):
+    """Most of the part held as one rigid body, and a node in millimetres."""
+    reduce_model(model, {"a": Interface(set="x0")}, Settings("rigid", "joint", 1))
+    assert not caplog.records
+    most = Interface(box={"x": (0.1, 0.4)})
+    reduce_model(model, {"a": most}, Settings("rigid", "joint", 1))
+    assert re.search(
+        r"interface a holds \d+ of the part's \d+ nodes as one rigid body; select its seat only", caplog.text
+    )
+    reduce_model(model, {"a": Interface(set="x0", at=(0.0, 50.0, 40.0))}, Settings("rigid", "joint", 1))
+    assert "interface a stands at (0, 50, 40) m, 63.97 m from the nodes it ties; the part reaches from" in caplog.text
