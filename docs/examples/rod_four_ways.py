@@ -40,9 +40,9 @@ def ball():
     return mass, TIP, np.full(3, 0.4 * mass * BALL**2)
 
 
-def hub(*without):
-    """The hub with its two journals, bored through; the neck that others draw inside it is taken off."""
-    return [ring(34.0, 12.0, 86.0, 0.0), ring(24.0, 12.0, 32.0, 59.0), ring(24.0, 12.0, 32.0, -59.0), *without]
+def hub(*more):
+    """The hub with its two journals, bored through, and more that is rigid with it."""
+    return [ring(34.0, 12.0, 86.0, 0.0), ring(24.0, 12.0, 32.0, 59.0), ring(24.0, 12.0, 32.0, -59.0), *more]
 
 
 def together(blocks):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
@@ -15,10 +16,15 @@ from prs_model.description.problems import Place
 from prs_model.description.schema import Point, Section
 from prs_model.finite_elements import FiniteElementModel
 from prs_model.plugins import PartRequest, Reducer
+from prs_model.readable import figure
 
 from .elements.beam_element import at_nodes, beam_matrices
 from .elements.beam_sections import BeamSection, CrossSection, may_taper, tapered
 from .elements.named_points import Direction, PointMass, check_ends, check_known, check_one_piece, local_axes, refuse
+
+WIDE = 3.0  # radius of gyration per length: a thin disc has 0.25 of its diameter
+
+_log = logging.getLogger("prs_model")
 
 
 class BeamMember(Section):
@@ -101,8 +107,22 @@ class BeamReducer(Reducer[BeamOptions]):
     gives = "full"
 
     def read(self, part: PartRequest[BeamOptions]) -> FiniteElementModel:
-        """Assemble the frame. Its nodes keep their names; each member is a node set under its own."""
+        """Assemble the frame. Its nodes keep their names; each member is a node set under its own.
+
+        A warning tells of a section that is far wider than the frame is long.
+        """
+        _warn_of_wide_sections(part.name, part.options)
         return beam_model(part.options)
+
+
+def _warn_of_wide_sections(name: str, options: BeamOptions) -> None:
+    lengths = [np.linalg.norm(np.diff(options.ends(member), axis=0)) for member in options.members]
+    longest = float(max([*lengths, *np.ptp(np.array(list(options.nodes.values()), dtype=float), axis=0)], default=0.0))
+    for section, shape in options.sections.items():
+        radius = shape.properties().radius
+        if radius > WIDE * longest:
+            found = f"section '{section}' has a radius of gyration of {figure(radius)} m"
+            _log.warning("%s: %s, the frame is %s m long; check units", name, found, figure(longest))
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from prs_model.description.units import Units
 from prs_model.finite_elements import FiniteElementModel
 from prs_reducers.beam import BeamOptions, beam_model
 from prs_reducers.elements.beam_element import plane_bending
+from prs_reducers.elements.beam_sections import Round
 
 E, NU, DENSITY = 2.1e11, 0.3, 7850.0
 G = E / 2.6
@@ -125,6 +127,21 @@ def test_mass_of_a_beam_without_shear_is_the_printed_one() -> None:
     assert found[:2] == pytest.approx(expected)
     mirrored = np.diag([1.0, -1.0, 1.0, -1.0])[[2, 3, 0, 1]]
     assert mirrored.T @ found @ mirrored == pytest.approx(found)
+
+
+def test_a_tube_shears_as_cowper_printed_it() -> None:
+    """Cowper 1966, table 1: 2 (1 + nu) / (4 + 3 nu) of a thin tube, 6 (1 + nu) / (7 + 6 nu) of a solid bar."""
+
+    def coefficient(bore: float | None) -> float:
+        section = Round.model_validate({"kind": "round", "diameter": 0.1, "bore": bore, "material": STEEL})
+        area = np.pi / 4.0 * (0.1**2 - (bore or 0.0) ** 2)
+        along_y, along_z = section.properties().shear
+        assert along_y == along_z
+        return along_y / (G * area)
+
+    assert coefficient(0.0999999) == pytest.approx(2.6 / 4.9, rel=1e-5)
+    assert coefficient(None) == pytest.approx(7.8 / 8.8)
+    assert coefficient(0.05) == pytest.approx(7.8 * 1.5625 / (8.8 * 1.5625 + 23.6 * 0.25))  # (1 + m^2)^2 = 1.5625
 
 
 TURN = Rotation.from_euler("xyz", [0.4, -0.7, 1.1]).as_matrix()
@@ -285,6 +302,30 @@ def test_wrong_members_are_explained(change: dict[str, Any], words: str) -> None
     options["sections"]["pipe"] = {"kind": "round", "diameter": 0.1, "bore": 0.05, "material": STEEL}
     with pytest.raises(prs.DescriptionError, match=words):
         prs.reduce("beam", **options, interfaces={"tip": {"node": "tip"}})
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"J": 2.1 * MOMENT}, r"J = 1\.05 \(Iy \+ Iz\), expected at most Iy \+ Iz"),
+        ({"kz": 1.2}, r"found kz = 1\.2, expected at most 1"),
+        ({"material": STEEL | {"G": 8e7}}, r"found G = 0\.000381 E, which no solid has"),
+    ],
+)
+def test_sections_that_do_not_exist_are_refused(change: dict[str, Any], words: str) -> None:
+    with pytest.raises(prs.DescriptionError, match=words):
+        model(bar(2, UNSHEARED | change))
+
+
+def test_a_section_in_other_units_than_the_nodes_is_noticed(caplog: pytest.LogCaptureFixture) -> None:
+    """25 x 80 mm read as metres on a bar of 1 m; a disc is no bar, and may be meant."""
+    with caplog.at_level(logging.WARNING, logger="prs_model"):
+        model(bar(2, SQUARE | {"y": 3.0, "z": 3.0}))
+        assert not caplog.messages
+        model(bar(2, SQUARE | {"y": 25.0, "z": 80.0}))
+    assert caplog.messages == [
+        "beam: section 'bar' has a radius of gyration of 23.09 m, the frame is 1 m long; check units"
+    ]
 
 
 @pytest.mark.parametrize(

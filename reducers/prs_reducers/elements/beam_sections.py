@@ -14,6 +14,9 @@ from prs_model.description.schema import Section
 
 from ..solid import MaterialOptions
 
+SHEAR = (0.01, 1.0)  # G / E, along the grain of wood or the fibres of a composite as well
+ROUND_OFF = 1e-9
+
 
 @dataclass(frozen=True)
 class CrossSection:
@@ -30,11 +33,23 @@ class CrossSection:
     mass: float
     inertia: tuple[float, float]
 
+    @property
+    def radius(self) -> float:
+        """The larger radius of gyration [m], from a quarter of the depth (round) to a half (two flanges)."""
+        return float(np.sqrt(max(self.bending) / self.axial))
+
 
 class BeamMaterial(MaterialOptions):
     """Isotropic elasticity; `G` where it is not E / 2 (1 + nu)."""
 
     G: Pressure | None = None
+
+    @model_validator(mode="after")
+    def _shears_as_a_solid(self) -> BeamMaterial:
+        share = self.shear_modulus / float(self.E)
+        if self.G is not None and not SHEAR[0] <= share <= SHEAR[1]:
+            raise PydanticCustomError("G", f"found G = {share:.3g} E, which no solid has; steel's is 0.385 E")
+        return self
 
     @property
     def shear_modulus(self) -> float:
@@ -98,7 +113,8 @@ class Rectangle(Section):
 class Properties(Section):
     """Any section in its principal axes: moments about y and z, torsion constant, shear coefficients along y and z.
 
-    Left out, a shear coefficient is infinite: the beam does not shear in that direction.
+    Left out, a shear coefficient is infinite: the beam does not shear in that direction. The torsion constant of a
+    section is at most its polar moment Iy + Iz, which only round ones reach, and a shear coefficient at most 1.
     """
 
     kind: Literal["properties"]
@@ -109,6 +125,17 @@ class Properties(Section):
     J: AreaMoment
     ky: PositiveNumber | None = None
     kz: PositiveNumber | None = None
+
+    @model_validator(mode="after")
+    def _belong_to_a_section(self) -> Properties:
+        share = float(self.J) / (float(self.Iy) + float(self.Iz))
+        if share > 1.0 + ROUND_OFF:
+            expected = "expected at most Iy + Iz, which a round section has"
+            raise PydanticCustomError("J", f"found J = {share:.4g} (Iy + Iz), {expected}")
+        for name, factor in (("ky", self.ky), ("kz", self.kz)):
+            if factor is not None and factor > 1.0:
+                raise PydanticCustomError(name, f"found {name} = {factor:.4g}, expected at most 1, such as 5/6")
+        return self
 
     def properties(self) -> CrossSection:
         """As given."""
