@@ -43,6 +43,21 @@ def test_it_is_listed_and_reads_its_part(environment: Path, project: Path) -> No
     assert float(done.stdout) == pytest.approx(7850.0 * 0.3 * 0.03 * 0.02)
 
 
+def test_the_commands_of_the_page(environment: Path, project: Path) -> None:
+    """Its last block, line by line; words of interfaces are nodes of this part, which has no sets."""
+    page = (DOCS / "write-a-reducer.md").read_text()
+    commands = re.findall(r"\n\n```\n(prs-model .*?)```", page, re.DOTALL)[-1].splitlines()
+    assert [line.split()[:2] for line in commands] == [["prs-model", "reducers"], ["prs-model", "reduce"]]
+    for line in commands:
+        program, *words = line.split()
+        done = run(environment / program, *words, cwd=project)
+        assert done.returncode == 0, done.stderr
+    assert re.search(r"^mass/kg +1\.413$", done.stdout, re.MULTILINE)
+    refused = run(environment / "prs-model", *words, "--interface", "more=lift", cwd=project)
+    assert refused.returncode == 1
+    assert "found 'lift', " in refused.stderr
+
+
 def test_the_sample_is_what_its_script_writes(environment: Path, project: Path) -> None:
     part = project / "tests" / "bar.lab"
     before = [float(word) for word in part.read_text().split() if len(word) > 15]
