@@ -46,9 +46,9 @@ def select(
     """Node indices (m,) and weights (m,) that a selection means; several ways of naming them are intersected.
 
     Weights are nodal areas [m^2]: those of the selected set where it has them, else those of the outer surface; all are
-    zero when no area is known. shift: how far boxes, cylinders and planes have moved [m]. Nodes without DOFs (clamped ones) are
-    left out. Raises PartFileError naming `entry` when a set or label is unknown or nothing is left, with what each part
-    of the selection found.
+    zero when no area is known. shift: how far boxes, cylinders and planes have moved [m]. Nodes without DOFs (clamped
+    ones) are left out. Raises PartFileError naming `entry` when a set or label is unknown or nothing is left, with what
+    each part of the selection found.
     """
     masks = dict(_masks(model, selection, np.asarray(shift, dtype=float), entry))
     if not masks:

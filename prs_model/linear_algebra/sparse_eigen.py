@@ -22,12 +22,11 @@ def lowest_eigenvalues(stiffness: csr_array, mass: csr_array, count: int) -> Flo
     no care. Raises PrsError when the pencil is singular or the iteration does not converge.
     """
     n = stiffness.shape[0]
+    if min(stiffness.diagonal().sum(), mass.diagonal().sum()) <= 0.0:
+        raise PrsError("no frequencies: the part has no mass, or no stiffness")
     if n <= DENSE:
         return lowest_modes(mass.toarray(), stiffness.toarray(), count)[0]
-    rate = float(stiffness.diagonal().sum() / mass.diagonal().sum()) if mass.diagonal().sum() > 0.0 else 0.0
-    if rate <= 0.0:
-        raise PrsError("no frequencies: the part has no mass, or no stiffness")
-    shift = -SHIFT * rate
+    shift = -SHIFT * float(stiffness.diagonal().sum() / mass.diagonal().sum())
     try:
         solve = factorize(csr_array(stiffness - shift * mass))
     except np.linalg.LinAlgError as error:

@@ -16,6 +16,8 @@ from .travelling import TravellingElement
 
 logger = logging.getLogger("prs_model")
 
+INSTALLED = {"site-packages", "dist-packages"}
+
 Element = SuperElement | TravellingElement
 
 
@@ -55,7 +57,13 @@ class StoredPart:
         return element
 
     def keep(self, element: Element) -> None:
-        """Store an element. Where the store cannot be written, the next run reduces the part again."""
+        """Store an element. Where the store cannot be written, the next run reduces the part again.
+
+        What pip has installed stays as it was installed.
+        """
+        if INSTALLED & set(self.folder.resolve().parts):
+            logger.info("%s: not stored in %s, which belongs to an installed package", self.stem, self.folder)
+            return
         try:
             storage.save(element, self.path)
         except PartFileError as error:
@@ -63,9 +71,9 @@ class StoredPart:
 
     def _nowhere(self) -> str:
         others = {path.name: _differences(self.recipe, _recipe_in(path)) for path in self._neighbours()}
-        known = {name: what for name, what in others.items() if what}
-        if not known and not (self.folder.parent / "rebuild.py").exists():
-            return f"there is no such file; correct bodies.{self.stem}.source"
+        known = {name: what for name, what in others.items() if what and not _is_read_otherwise(what)}
+        if not known and (others or not (self.folder.parent / "rebuild.py").exists()):
+            return f"there is no such file (relative to the machine's folder); correct bodies.{self.stem}.source"
         sentences = [f"there is no such file, and {self.folder} holds no '{self.path.name}' reduced from it"]
         if known:
             closest = min(sorted(known), key=lambda name: len(known[name]))
@@ -101,6 +109,11 @@ def _differences(wanted: str, stored: str) -> list[str]:
         return differences(wanted, stored)
     except (ValueError, RecursionError):  # no recipe
         return []
+
+
+def _is_read_otherwise(differences: Sequence[str]) -> bool:
+    """Whether the stored part comes from another reducer: then it is no near miss."""
+    return any(each.startswith("reducer:") for each in differences)
 
 
 def provenance(element: Element) -> dict[str, str]:

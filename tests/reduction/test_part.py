@@ -6,12 +6,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.io import mmwrite
 
 import prs_model as prs
 from prs_model.description.schema import Body, ReductionDefaults
 from prs_model.reduction import build_part
+from prs_model.reduction.request import part_name
 from prs_reducers.solid import SolidReducer
-from tests.meshes import STEEL, box, write
+from tests.meshes import STEEL, box, steel, write
 
 STEEL_MM = {"units": "mm-N-tonne-s", "material": STEEL}
 DEFAULTS = ReductionDefaults(store="reduced", modes=2)
@@ -79,6 +81,31 @@ def test_a_changed_part_file_is_reduced_again(folder):
     assert len(stored(folder)) == 1
 
 
+def test_a_changed_companion_makes_the_part_again(tmp_path):
+    """The mass is in a file of its own; the source stays as it is."""
+    model = steel(box((0.35, 0.05, 0.05), (3, 1, 1)))
+    mmwrite(tmp_path / "k.mtx", model.stiffness, symmetry="symmetric")
+    mmwrite(tmp_path / "m.mtx", model.mass, symmetry="symmetric")
+    rows = np.column_stack([np.arange(model.size) + 1, model.dofs + 1, model.coordinates[model.dofs[:, 0]]])
+    np.savetxt(
+        tmp_path / "k_dofs.txt", rows, "%d %d %d %.12g %.12g %.12g", header="row node component x y z", comments=""
+    )
+    entries = {"reducer": "matrix_market", "source": "k.mtx", "units": "m-N-kg-s", "options": {"mass": "m.mtx"}}
+    part = body(**entries, interfaces={"hinge": {"box": {"x": (-0.01, 0.01)}}})
+    first = build_part("rod", part, DEFAULTS, tmp_path)
+    mmwrite(tmp_path / "m.mtx", 2.0 * model.mass, symmetry="symmetric")
+    second = build_part("rod", part, DEFAULTS, tmp_path)
+    assert second.mass_properties().mass == pytest.approx(2.0 * first.mass_properties().mass)
+
+
+def test_an_installed_package_stays_as_it_is(folder, tmp_path):
+    installed = tmp_path / "site-packages" / "machine"
+    installed.mkdir(parents=True)
+    shutil.copy(folder / "rod.msh", installed)
+    build_part("rod", body(), DEFAULTS, installed)
+    assert sorted(path.name for path in installed.iterdir()) == ["rod.msh"]
+
+
 def test_settings_decide_which_stored_element_is_used(folder):
     """Each change of the result has its own file; what does not matter has not."""
     build_part("rod", body(), DEFAULTS, folder)
@@ -101,6 +128,9 @@ def test_what_is_missing_is_explained(folder):
     with pytest.raises(prs.PartFileError, match=r"differs in modes: 5, stored 2; put the part file there"):
         build_part("rod", body(modes=5), DEFAULTS, folder)
     (folder / "rebuild.py").touch()
+    other = body(reducer="npz", source="no.npz", units=None, options={})
+    with pytest.raises(prs.PartFileError, match=r"no such file \(relative to the machine's folder\); correct [\w.]+$"):
+        build_part("rod", other, DEFAULTS, folder)
     with pytest.raises(prs.PartFileError, match=r"make the part file with: python .*rebuild\.py"):
         build_part("rod", body(modes=5), DEFAULTS, folder)
     package = folder / "machines" / "head"
@@ -188,3 +218,60 @@ def test_reduce_takes_plain_lists_and_arrays(folder):
         prs.reduce("solid", folder / "rod.msh", interfaces={"hinge": {"st": "x0"}}, material=STEEL)
     with pytest.raises(prs.UnknownNameError, match="Did you mean 'solid'"):
         prs.reduce("sold", folder / "rod.msh")
+
+
+def test_interfaces_in_short_are_those_in_full(folder):
+    """A word is a set, a number a node and a list several of them; NumPy's numbers are numbers."""
+    in_full = prs.reduce("solid", folder / "rod.msh", interfaces={"a": {"set": "x0"}}, **STEEL_MM)
+    for given in ({"a": "x0"}, {"a": np.str_("x0")}):
+        in_short = prs.reduce("solid", folder / "rod.msh", interfaces=given, **STEEL_MM)
+        assert np.array_equal(in_full.stiffness, in_short.stiffness)
+    assert prs.reduce("solid", folder / "rod.msh", interfaces=["x0", "x1"], **STEEL_MM).nodes == ("x0", "x1")
+    frame = {"nodes": {"3": (0.0, 0.0, 0.0), "11": (0.1, 0.0, 0.0), "left": (0.2, 0.0, 0.0)}, "mass": 2.0}
+    tip = {"tip": np.int64(3), "root": np.array([11, 3])[:1], "end": "left"}
+    assert set(prs.reduce("rigid", options=frame, interfaces=tip).nodes) == {"tip", "root", "end"}
+
+
+def test_nodes_in_short(folder):
+    element = prs.reduce("solid", folder / "rod.msh", interfaces={"a": "x0", "b": "x1"}, **STEEL_MM)
+    element.save(folder / "rod.npz")
+    assert prs.reduce("npz", folder / "rod.npz", nodes=["a", "b"]).nodes == ("a", "b")
+    assert prs.reduce("npz", folder / "rod.npz", nodes={"tip": "b"}).nodes == ("a", "tip")
+    cases = (
+        ({"nodes": {"tip": 1.5}}, r"interfaces.tip.node: found 1.5, expected a name or a whole number"),
+        ({"nodes": {"tip": "b"}, "interfaces": {"tip": "a"}}, "interface 'tip' is given twice"),
+        (
+            {"interfaces": {"tip": {"node": 11, "nodes": [23]}}},
+            r"tip: found a selection .* and node, expected only one",
+        ),
+        ({"interfaces": {"tip": {"box": {"x": [4, 3]}}}}, r"tip.box.x: found the bounds in falling order"),
+        ({"interfaces": {"tip": "c"}}, r"tip: found 'c', which is neither a node set \(none\) nor a node \(a, b\)"),
+    )
+    for given, words in cases:
+        with pytest.raises(prs.PrsError, match=words):
+            prs.reduce("npz", folder / "rod.npz", **given)
+
+
+def test_clamped_sets_ground_the_part_by_themselves(folder):
+    one = prs.reduce("solid", folder / "rod.msh", interfaces={"a": "x1"}, clamped="x0", **STEEL_MM)
+    other = prs.reduce("solid", folder / "rod.msh", interfaces={"a": "x1"}, clamped=["x0"], grounded=True, **STEEL_MM)
+    assert one.grounded
+    assert np.array_equal(one.stiffness, other.stiffness)
+
+
+def test_a_source_for_a_reducer_that_reads_none_is_refused():
+    with pytest.raises(prs.PartFileError, match=r"reducer 'rigid': found the source 'a.msh', expected none"):
+        prs.reduce("rigid", "a.msh", mass=1.0, nodes={"a": (0.0, 0.0, 0.0)})
+
+
+def test_a_part_is_called_by_its_file(folder):
+    packed = folder / "rod_v2.free.msh.gz"
+    assert part_name(packed) == "rod_v2.free"
+
+
+def test_parts_without_a_file_are_made_once_and_said(caplog):
+    options = {"mass": 2.0, "nodes": {"a": (0.0, 0.0, 0.0), "b": (0.3, 0.0, 0.0)}}
+    with caplog.at_level("INFO", "prs_model"):
+        one, other = (prs.reduce("rigid", options=options) for _ in range(2))
+    assert one is other
+    assert caplog.text.count("rigid: 2 kg") == 1

@@ -100,6 +100,7 @@ def rewritten(path: Path, **changes: object) -> None:
         (lambda path: np.savez(path, stiffness=np.eye(3)), "damaged"),
         (lambda path: np.savez(path, header=np.array({"format": 1}, dtype=object)), "damaged"),
         (lambda path: rewritten(path, mass=None), "damaged"),
+        (lambda path: rewritten(path, mass=np.full((1, 14, 14), 1.0, dtype=object)), "damaged"),
         (lambda path: rewritten(path, mass=np.ones((1, 3, 3))), "mass has shape"),
         (lambda path: rewritten(path, mass=np.full((1, 14, 14), np.nan)), "not finite numbers"),
         (lambda path: rewritten(path, nodes=["a"]), "positions has shape"),
