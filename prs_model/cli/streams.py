@@ -70,12 +70,14 @@ def complain(text: str) -> None:
 def messages(*, quiet: bool) -> Iterator[None]:
     """The library's log on standard error: progress and warnings, or warnings only."""
     log, handler = logging.getLogger("prs_model"), logging.StreamHandler(sys.stderr)
+    before = log.level
     log.addHandler(handler)
     log.setLevel(logging.WARNING if quiet else logging.INFO)
     try:
         yield
     finally:
         log.removeHandler(handler)
+        log.setLevel(before)
 
 
 def _give_up(stream: TextIO) -> None:

@@ -35,6 +35,7 @@ from .quantity import (
     StiffnessRR,
     StiffnessTR,
     StiffnessTT,
+    Tolerance,
 )
 from .section import Section as Section
 from .units import Units
@@ -85,7 +86,7 @@ class Expected(Section):
 
     mass: Mass | None = None
     frequency: Frequency | None = None
-    tolerance: DampingRatio | None = None  # relative; default 0.05
+    tolerance: Tolerance | None = None  # relative; default 0.05
 
 
 class Body(Section):
