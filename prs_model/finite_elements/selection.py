@@ -77,8 +77,13 @@ def _no_words(model: LabelledNodes, name: str) -> str:
 def unknown_set(model: LabelledNodes, name: str, entry: str) -> str:
     """The sentence for a node set that the part does not have."""
     known = list(model.node_sets)
-    listed = ", ".join(known) or "none (the file has no sets)"
-    return f"{entry}: found node set '{name}', expected one of {listed}{did_you_mean(name, known)}"
+    nodes = [] if model.node_ids is None else [str(label) for label in model.node_ids]
+    if name in nodes:
+        return f"{entry}: found node set '{name}', which is a node of the part; did you mean {{node: {name}}}?"
+    if known:
+        return f"{entry}: found node set '{name}', expected one of {', '.join(known)}{did_you_mean(name, known)}"
+    instead = f"; its nodes are {listed_nodes(nodes)}{did_you_mean(name, nodes)}" if nodes else ""
+    return f"{entry}: found node set '{name}', and the part has none{instead}"
 
 
 def _masks(model: LabelledNodes, selection: Selection, shift: FloatArray, entry: str) -> Iterable[tuple[str, Mask]]:

@@ -113,7 +113,8 @@ def fixed_interface_modes(part: HeldPart, n_modes: int) -> FloatArray:
     if n_modes == 0:
         return np.zeros((model.size, 0))
     if n_modes > n - m - 1:
-        raise PartFileError(model.source, f"found {n - m} inner DOFs, too few for {n_modes} modes")
+        taken = "" if n else ": its interfaces take all nodes of the part; select their seats only"
+        raise PartFileError(model.source, f"found {n - m} inner DOFs, too few for {n_modes} modes{taken}")
     count = min(n_modes + 1, n - m - 1)
     logger.info("%s: finding %d fixed-interface modes", model.name, n_modes)
     shapes = np.zeros((model.size, count))

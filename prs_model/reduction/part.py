@@ -16,7 +16,6 @@ from .expected import check_expected
 from .made import make_part
 from .recipe import Settings, recipe
 from .request import all_interfaces, all_options, asked, body_of
-from .request import validated as validated
 from .store import Element, StoredPart, files_hash
 from .summary import echo
 from .super_element import SuperElement

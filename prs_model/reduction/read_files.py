@@ -8,7 +8,7 @@ from typing import Any
 
 from .. import plugins
 from ..description.units import SI, Units
-from .part import validated
+from .request import validated
 
 
 def read_files(

@@ -176,6 +176,8 @@ def test_a_grounded_part_is_held(model):
         ({name: {"set": "x0", "coupling": "averaged"} for name in "ab"}, 3, "interface a is averaged over .*repeats b"),
         ({"a": {"nodes": (1,)}}, 3, "interfaces.a.nodes: its nodes have no labels .*name a set, a box or a cylinder"),
         ({"a": {"set": "x0"}}, 5000, "too few for 5000 modes"),
+        ({"a": {"box": {}}}, 3, "found 0 inner DOFs, too few for 3 modes: its interfaces take all nodes"),
+        ({"x0": {}}, 3, r"interfaces.x0: no nodes named, .*did you mean {set: x0}\?"),
         ({"a": {"node": 3}}, 3, "interfaces.a.nodes: its nodes have no labels"),
     ],
 )

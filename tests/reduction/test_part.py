@@ -199,7 +199,7 @@ def test_reduced_parts_take_the_names_of_interfaces(folder):
         ({"lower": {"node": "hing"}}, "interfaces.lower.node: found 'hing', .*did you mean 'hinge'"),
         ({"a": {"node": "tip"}, "b": {"node": "tip"}}, "node 'tip' is interface 'a' already"),
         ({"tip": {"node": "hinge"}}, "has the name of another retained node"),
-        ({"tip": {"set": "x1"}}, "found node set 'x1', expected one of none"),
+        ({"tip": {"set": "x1"}}, "found node set 'x1', and the part has none; its nodes are hinge, tip"),
     )
     for interfaces, words in cases:
         with pytest.raises(prs.PartFileError, match=words):
@@ -245,6 +245,7 @@ def test_nodes_in_short(folder):
             r"tip: found a selection .* and node, expected only one",
         ),
         ({"interfaces": {"tip": {"box": {"x": [4, 3]}}}}, r"tip.box.x: found the bounds in falling order"),
+        ({"interfaces": {"tip": {"set": "b"}}}, r"'b', which is a node of the part; did you mean {node: b}\?"),
         ({"interfaces": {"tip": "c"}}, r"tip: found 'c', which is neither a node set \(none\) nor a node \(a, b\)"),
     )
     for given, words in cases:
