@@ -1,5 +1,6 @@
 """Matrix Market files with a table of rows: read strictly, written, read back."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -84,11 +85,12 @@ def test_a_mistyped_fact_is_noticed(tmp_path: Path, caplog: pytest.LogCaptureFix
 
 
 def test_an_averaged_node_cannot_be_written(tmp_path: Path) -> None:
-    element = prs.reduce(
-        "matrix_market",
-        written(tmp_path),
-        units="m-N-kg-s",
-        interfaces={"middle": {"nodes": ["big end", "tip"], "coupling": "averaged"}},
+    plain = springs_and_mode(True)
+    element = replace(
+        plain,
+        nodes=("middle", *plain.nodes),
+        positions=np.vstack([plain.positions.mean(axis=0), plain.positions]),
+        motions=np.concatenate([plain.motions.mean(axis=0)[None], plain.motions]),
     )
     with pytest.raises(prs.PartFileError, match=r"cannot hold .* store it as \.npz"):
         reducer("matrix_market").write(element, tmp_path / "other.mtx", Units())
