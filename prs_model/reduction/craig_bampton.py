@@ -181,8 +181,16 @@ def _free(model: FiniteElementModel) -> FloatArray:
 
 
 def _normalised(model: FiniteElementModel, shapes: FloatArray) -> FloatArray:
-    """One Rayleigh-Ritz step to full accuracy; the first entry close to the largest is made positive."""
-    rotation = eigh(shapes.T @ (model.stiffness @ shapes), shapes.T @ (model.mass @ shapes))[1]
+    """One Rayleigh-Ritz step to full accuracy; the first entry close to the largest is made positive.
+
+    Raises PhysicsError when the mass matrix is negative in one of the shapes.
+    """
+    mass = shapes.T @ (model.mass @ shapes)
+    lowest = float(np.min(np.linalg.eigvalsh(mass), initial=1.0))
+    if not lowest > 0.0:
+        cause = "a flipped sign or digit in the mass matrix: compare it with the one in the part's solver"
+        raise PhysicsError(model.name, "mass is not negative", -lowest, 0.0, cause)
+    rotation = eigh(shapes.T @ (model.stiffness @ shapes), mass)[1]
     shapes = shapes @ rotation
     size = np.abs(shapes)
     leading = np.argmax(size > 0.99 * size.max(axis=0), axis=0)

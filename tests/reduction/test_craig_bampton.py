@@ -282,3 +282,10 @@ def test_a_surprising_selection_is_noted(model, caplog):
     )
     reduce_model(model, {"a": Interface(set="x0", at=(0.0, 50.0, 40.0))}, Settings("rigid", "joint", 1))
     assert "interface a stands at (0, 50, 40) m, 63.9 m from the nodes it ties; the part reaches from" in caplog.text
+
+
+def test_a_negative_mass_is_refused():
+    model = steel(box((0.4, 0.1, 0.08), (3, 1, 1)))
+    negative = replace(model, mass=-1.0 * model.mass)
+    with pytest.raises(prs.PhysicsError, match="mass is not negative"):
+        reduce_model(negative, {"a": Interface(set="x0")}, Settings("rigid", "joint", 2))
