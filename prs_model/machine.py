@@ -14,6 +14,8 @@ from .description import MachineDescription, load_description, replaced
 from .errors import PrsError, short
 
 if TYPE_CHECKING:
+    from .complete_order import CompleteOrder
+    from .description.schema import Coupling
     from .joints import ElasticJoint
     from .kinematics import Configuration, Kinematics
     from .modes import Modes
@@ -114,6 +116,15 @@ class Machine:
     def modes(self, count: int = 8, /, **pose: float) -> Modes:
         """The lowest natural modes at a pose."""
         return self.assemble(self.configuration(**pose)).modes(count)
+
+    def complete_order(self, coupling: Coupling = "averaged") -> CompleteOrder:
+        """The full finite-element model of the assembly, which the reduced one is held against.
+
+        coupling: of every interface, one node each. Parts are factorized when first needed: keep it for several poses.
+        """
+        from .complete_order import CompleteOrder
+
+        return CompleteOrder(self.description, self.joints, coupling)
 
     def replace(self, changes: Mapping[str, object]) -> Machine:
         """A new machine with entries of its description changed, such as ``{"joints.P.drive.nut": 1.0e5}``.

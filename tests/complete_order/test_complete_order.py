@@ -1,0 +1,95 @@
+"""The complete-order model against one monolithic matrix of the same assembly, and as a bound of reduced models."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.linalg import block_diag, eigh, null_space
+
+import prs_model as prs
+from tests.meshes import STEEL, box, write
+
+URDF = """<robot name="pair">
+  <link name="lower"/>
+  <link name="upper"/>
+  <joint name="seat" type="fixed"><parent link="lower"/><child link="upper"/><origin xyz="0.3 0 0"/></joint>
+</robot>
+"""
+MACHINE = """name: pair
+urdf: pair.urdf
+task: {{kind: fixed, frame: upper, workspace: {{}}, reference: {{pose: {{}}, joints: {{}}}}}}
+reduction: {{coupling: {coupling}, tie: interface, modes: 8}}
+bodies:
+  lower:
+    frame: lower
+    reducer: solid
+    source: lower.msh
+    units: m-N-kg-s
+    options: {{material: {steel}}}
+    clamped: [x0]
+    grounded: true
+    interfaces: {{seat: {{set: x1}}}}
+  upper:
+    frame: upper
+    reducer: solid
+    source: upper.msh
+    units: m-N-kg-s
+    options: {{material: {steel}}}
+    interfaces: {{seat: {{set: x0}}, tip: {{set: x1}}}}
+joints:
+  seat: {{frame: upper, between: [lower.seat, upper.seat], {law}}}
+output: {{node: upper.tip, frame: upper}}
+"""
+ELASTIC = "stiffness: {ux: 4.0e8, uy: 2.0e8, uz: 2.0e8, rx: 3.0e5, ry: 5.0e5, rz: 5.0e5}"
+PARTLY = "stiffness: {ux: rigid, uy: 2.0e8, uz: rigid, rx: 3.0e5, ry: 5.0e5, rz: rigid}"
+
+
+def pair(folder: Path, coupling: str, law: str) -> prs.Machine:
+    write(box((0.3, 0.1, 0.08), (3, 1, 1)), folder / "lower.msh")
+    write(box((0.2, 0.1, 0.08), (2, 1, 1)), folder / "upper.msh")
+    (folder / "pair.urdf").write_text(URDF)
+    (folder / "machine.yaml").write_text(MACHINE.format(coupling=coupling, law=law, steel=STEEL))
+    return prs.load_machine(folder)
+
+
+@pytest.mark.parametrize("law", [ELASTIC, PARTLY], ids=["elastic", "partly rigid"])
+@pytest.mark.parametrize("coupling", ["averaged", "rigid"])
+def test_woodbury_equals_the_monolithic_matrix(tmp_path, coupling, law):
+    machine = pair(tmp_path, coupling, law)
+    complete = machine.complete_order(coupling)
+    modes = complete.modes(machine.configuration(), 6)
+    bodies, system = complete.parts(machine.configuration()), modes.system
+    stiffness = block_diag(*(part.model.stiffness.toarray() for part in bodies.values()))
+    mass = block_diag(*(part.model.mass.toarray() for part in bodies.values()))
+    outputs = block_diag(*(part.outputs.toarray() for part in bodies.values()))
+    independent = np.linalg.pinv(system.expansion) @ outputs
+    stiffness += independent.T @ system.stiffness @ independent
+    allowed = null_space(outputs - system.expansion @ independent, rcond=1e-9)
+    stiffness, mass = (allowed.T @ matrix @ allowed for matrix in (stiffness, mass))
+    values = eigh(stiffness, mass, eigvals_only=True, subset_by_index=[0, 5])
+    assert modes.frequencies == pytest.approx(np.sqrt(values) / (2.0 * np.pi), rel=1e-8)
+    assert modes.size == sum(part.size for part in bodies.values())
+
+
+@pytest.mark.parametrize("coupling", ["averaged", "rigid"])
+def test_reduced_frequencies_lie_above(tmp_path, coupling):
+    machine = pair(tmp_path, coupling, ELASTIC)
+    complete = machine.complete_order(coupling).modes(machine.configuration(), 6)
+    reduced = machine.modes(6).frequencies
+    assert np.all(reduced >= complete.frequencies * (1.0 - 1e-9))
+    assert reduced[:3] == pytest.approx(complete.frequencies[:3], rel=2e-3)
+
+
+def test_motions_are_those_of_the_reduced_modes(tmp_path):
+    machine = pair(tmp_path, "averaged", ELASTIC)
+    complete = machine.complete_order().modes(machine.configuration(), 3)
+    tool = machine.modes(3).output_shapes
+    for k in range(3):
+        a, b = complete.output_motions[:, k], tool[:, k]
+        assert (a @ b) ** 2 == pytest.approx((a @ a) * (b @ b), rel=1e-3)
+
+
+def test_a_reduced_part_is_refused():
+    machine = prs.load_machine("hexapod")
+    with pytest.raises(prs.PartFileError, match="comes reduced: the complete order needs full matrices"):
+        machine.complete_order().modes(machine.configuration())
