@@ -89,7 +89,7 @@ class Machine:
     def assemble(self, configuration: Configuration | None = None) -> System:
         """The synthesised system in a configuration (default: the reference).
 
-        Joints whose ends lie apart are warned of, once for each machine.
+        Joints whose ends lie apart and bodies that no joint holds are warned of, once for each machine.
         """
         from .synthesis import assemble
 
@@ -108,9 +108,16 @@ class Machine:
             for name, gap in gaps.items()
         )
 
+    def loose_bodies(self) -> tuple[str, ...]:
+        """A sentence for each body that neither a joint nor the ground holds."""
+        held = {end.split(".")[0] for joint in self.description.joints.values() for end in joint.between}
+        bodies = self.description.bodies
+        loose = [name for name, body in bodies.items() if name not in held and not body.grounded]
+        return tuple(f"body '{name}' is held by no joint" for name in loose)
+
     @cached_property
     def _warned(self) -> None:
-        for sentence in self.wide_joints():
+        for sentence in (*self.loose_bodies(), *self.wide_joints()):
             _log.warning("%s", sentence)
 
     def modes(self, count: int = 8, /, **pose: float) -> Modes:

@@ -143,7 +143,9 @@ def _figures(outcome: dict[str, Any]) -> list[tuple[str, str]]:
     rows += [("nodes held/Hz", _vector(outcome["fixed_frequencies_hz"]))]
     rows += [("as it is/Hz" if outcome["grounded"] else "free/Hz", _vector(outcome["free_frequencies_hz"]))]
     if outcome["reduced_here"]:
-        rows += [("", "with the interfaces tied: rigid ones stiffen the part against what its solver says")]
+        rows += [
+            ("", "of the reduced part: few modes (--modes) and rigid interfaces raise them above what its solver says")
+        ]
     return rows
 
 

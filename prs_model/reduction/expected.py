@@ -33,7 +33,7 @@ def _compare(
         return
     read = "none" if found is None else f"{figure(found, DIGITS)} {unit}"
     within = f"{figure(wanted, DIGITS)} {unit} within {100.0 * tolerance:.3g} %"
-    check = "check 'units', and that the file is this part's"
+    check = "check 'units', that the file is this part's, and whether more modes or averaged interfaces bring it near"
     raise PartFileError(_place(element), f"expected.{what}: found {read}, expected {within}; {check}")
 
 

@@ -38,6 +38,9 @@ class GateReport:
     subject: str
     checks: tuple[Check, ...]
 
+    def __repr__(self) -> str:
+        return str(self)
+
     def __str__(self) -> str:
         lines = [f"{check.name:<46} {check.figure:9.2e}  (allowed {check.limit:.0e})" for check in self.checks]
         return "\n".join([f"{self.subject}: physics gate passed", *lines])

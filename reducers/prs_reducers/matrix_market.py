@@ -24,6 +24,8 @@ from prs_model.reduction.storage import whole
 from .tables.dof_table import DofTable, digest, read_dof_table, write_dof_table
 from .tables.mtx import is_mtx, parse_mtx, write_mtx
 
+SIGNATURE = "stiffness-sha256"  # a fact in every table that `write` makes
+
 
 class MatrixMarketOptions(Section):
     """Files beside the stiffness, relative to its folder; default ``<stem>_mass.mtx`` and ``<stem>_dofs.txt``.
@@ -85,6 +87,7 @@ class MatrixMarketReducer(Reducer[MatrixMarketOptions]):
         Numbers have 17 digits, so in SI they come back as they were. The outer surface is left out. Raises
         PartFileError for an element whose coordinates are not the motions of nodes along the body's axes and modes.
         """
+        _check_replaceable(path)
         nodes, components = coordinates_of(element, path)
         stiffness, mass = in_file_units(element.stiffness, element.mass, np.array(components), units)
         system = f"{units.length}-{units.force}-{units.mass}-s"
@@ -109,6 +112,14 @@ def companions(path: Path) -> tuple[Path, Path]:
     """Default names of the mass and of the table beside a stiffness."""
     stem = Path(path.name.removesuffix(".gz")).stem
     return path.with_name(f"{stem}_mass.mtx"), path.with_name(f"{stem}_dofs.txt")
+
+
+def _check_replaceable(path: Path) -> None:
+    """Raises PartFileError where files of these names are there that this program has not written."""
+    mass, dofs = companions(path)
+    there = [file for file in (path, mass, dofs) if file.exists()]
+    if there and not (dofs.exists() and SIGNATURE in read_text(dofs)):
+        raise PartFileError(there[0], "is there already, and was not written by this program: choose another name")
 
 
 def coordinates_of(element: SuperElement, path: Path) -> tuple[list[str], list[int]]:

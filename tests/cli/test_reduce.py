@@ -74,7 +74,7 @@ def test_options_come_from_files_and_are_changed_after(tmp_path, capsys):
     assert re.search(r"^b +0\.004000+ +0\.000000+ +0\.000000+$", shown, re.MULTILINE)
     assert "size/m" in shown
     assert len(re.findall(r"\d\S*", next(line for line in shown.splitlines() if line.startswith("free/Hz")))) == 2
-    assert "rigid ones stiffen the part" in shown
+    assert "rigid interfaces raise them" in shown
 
 
 def test_a_point_mass_is_shown_and_stored(tmp_path, capsys):

@@ -10,6 +10,7 @@ import prs_model as prs
 from prs_model.description.units import Units
 from prs_model.finite_elements.rigid_motion import transfer
 from prs_model.plugins import reducer
+from prs_model.testing.element import plain_element
 
 LENGTH, AREA, E, DENSITY = 0.4, 1e-3, 2.1e11, 7850.0
 
@@ -200,3 +201,11 @@ def test_swapped_rows_fail_the_gate(tmp_path: Path) -> None:
     table.write_text(text.replace('2 "big end" uy', '2 "big end" rz').replace('6 "big end" rz', '6 "big end" uy'))
     with pytest.raises(prs.PhysicsError):
         prs.reduce("matrix_market", source, units="m-N-kg-s")
+
+
+def test_what_others_wrote_is_not_replaced(tmp_path):
+    for _ in range(2):
+        prs.export(plain_element(), tmp_path / "ours.mtx")
+    (tmp_path / "theirs.mtx").write_text("%%MatrixMarket matrix array real general\n1 1\n1.0\n")
+    with pytest.raises(prs.PartFileError, match=r"theirs\.mtx: is there already, and was not written by this program"):
+        prs.export(plain_element(), tmp_path / "theirs.mtx")

@@ -154,13 +154,21 @@ def test_an_op4_does_not_replace_what_is_no_companion(tmp_path: Path) -> None:
     write(plain_element(), tmp_path / "part.pch")
     punched = (tmp_path / "part.pch").read_bytes()
     for _ in range(2):
-        with pytest.raises(prs.PartFileError, match=r"part\.pch: would be replaced, but is no companion of part\.op4"):
+        with pytest.raises(
+            prs.PartFileError, match=r"part\.pch: would be replaced, but was not written beside part\.op4"
+        ):
             write(plain_element(), tmp_path / "part.op4")
         assert (tmp_path / "part.pch").read_bytes() == punched
         (tmp_path / "part.op4").touch()  # of another export
     write(plain_element(), tmp_path / "again.op4")
     (tmp_path / "again.op4").unlink()
     write(plain_element(), tmp_path / "again.op4")
+    (tmp_path / "alone.op4").write_bytes(b"of another program")
+    with pytest.raises(prs.PartFileError, match=r"alone\.op4: is there already, and was not written by this program"):
+        write(plain_element(), tmp_path / "alone.op4")
+    (tmp_path / "foreign.pch").write_text("$ of another program\n")
+    with pytest.raises(prs.PartFileError, match=r"foreign\.pch: is there already"):
+        write(plain_element(), tmp_path / "foreign.pch")
 
 
 def test_a_punch_does_not_replace_a_companion(tmp_path: Path) -> None:

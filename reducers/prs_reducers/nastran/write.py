@@ -33,10 +33,10 @@ def write_matop4(element: SuperElement, path: Path, units: Units) -> None:
 
     The .asm is for the main bulk data of an assembly run, the .pch for its end. Coordinates have the 16 characters of a
     field. The matrices that Nastran expects beside them are there as 1x1 zeros, and VA as ones: no damping, loads or
-    data recovery. Raises MissingExtraError, or PartFileError, also where it would replace another .asm or .pch.
+    data recovery. Raises MissingExtraError, or PartFileError, also where it would replace what others wrote.
     """
     points = points_of(element, path, units)
-    _check_companions(path)
+    _check_replaceable(path)
     data = _op4(points)
     head = note_lines(units, points.names, grounded=element.grounded)
     for suffix, lines in ((".asm", _assembly(points)), (".pch", _superelement(points))):
@@ -47,12 +47,14 @@ def write_matop4(element: SuperElement, path: Path, units: Units) -> None:
 def write_punch(element: SuperElement, path: Path, units: Units) -> None:
     """Write KAAX and MAAX as DMIG with GRID, CORD2R and SPOINT entries, in fields of 16 characters.
 
-    Raises PartFileError, also where it would replace the companion of an .op4.
+    Raises PartFileError, also where it would replace the companion of an .op4 or what others wrote.
     """
     if path.suffix.lower() == ".pch" and path.with_suffix(".op4").exists():
         raise PartFileError(
             path, f"would replace the companion of {path.with_suffix('.op4').name}: choose another name"
         )
+    if path.exists() and SIGNED not in read_text(path):
+        raise PartFileError(path, "is there already, and was not written by this program: choose another name")
     points = points_of(element, path, units)
     lines = [*note_lines(units, points.names, grounded=element.grounded), *_points(points)]
     for name, matrix in (("KAAX", points.stiffness), ("MAAX", points.mass)):
@@ -92,21 +94,23 @@ def _write(path: Path, data: bytes) -> None:
         file.write(data)
 
 
-def _check_companions(path: Path) -> None:
-    """Raises PartFileError where an .asm or .pch that is there belongs to no .op4 of this name."""
-    for suffix, entry in ((".asm", "SECONCT"), (".pch", "EXTRN")):
-        file = path.with_suffix(suffix)
-        if file.exists() and not _is_companion(file, entry, path):
-            raise PartFileError(file, f"would be replaced, but is no companion of {path.name}: choose another name")
+def _check_replaceable(path: Path) -> None:
+    """Raises PartFileError where an .op4, .asm or .pch of this name is there that this program has not written."""
+    companions = [path.with_suffix(suffix) for suffix in (".asm", ".pch")]
+    for file, entry in zip(companions, ("SECONCT", "EXTRN"), strict=True):
+        if file.exists() and not _is_our_companion(file, entry):
+            raise PartFileError(file, f"would be replaced, but was not written beside {path.name}: choose another name")
+    if path.exists() and not any(file.exists() for file in companions):
+        raise PartFileError(path, "is there already, and was not written by this program: choose another name")
 
 
-def _is_companion(file: Path, entry: str, op4: Path) -> bool:
+def _is_our_companion(file: Path, entry: str) -> bool:
     try:
         text = read_text(file)
     except PartFileError:
         return False
     names = {line[:8].split(",")[0].strip() for line in text.splitlines()}
-    return entry in names and not names & {"DMIG", "DMIG*"} and (op4.exists() or SIGNED in text)
+    return SIGNED in text and entry in names and not names & {"DMIG", "DMIG*"}
 
 
 def _assembly(points: Points) -> list[str]:
