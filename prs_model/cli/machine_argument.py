@@ -5,20 +5,18 @@ from __future__ import annotations
 import argparse
 
 from ..machine import Machine, load_machine
-from .values import assignment, settings_from
+from .values import add_assignments, settings_from
 
 
 def add_settings(parser: argparse.ArgumentParser) -> None:
     """``--set``, for commands that take a machine."""
-    parser.add_argument(
+    add_assignments(
+        parser,
         "--set",
-        dest="settings",
-        action="append",
-        type=assignment,
-        default=[],
-        metavar="PATH=VALUE",
-        help="change an entry of the description, such as joints.P.drive.nut=1.0e5; bodies.rod=@rod.yaml takes it from "
-        "a file, in which sources are relative to the machine's folder (may be repeated)",
+        "settings",
+        "PATH=VALUE",
+        "change an entry of the description, such as joints.P.drive.nut=1.0e5; bodies.rod=@rod.yaml takes it from a file, "
+        "in which sources are relative to the machine's folder",
     )
 
 

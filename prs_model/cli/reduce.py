@@ -10,7 +10,7 @@ from typing import Any
 from ..errors import PrsError
 from ..readable import figure
 from .table import table
-from .values import assignment, nested, once, positive, value_of
+from .values import add_assignments, nested, once, positive, value_of
 from .wording import in_words_of_the_command
 
 NAME = "reduce"
@@ -26,14 +26,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--units", help="of the part file, such as mm-N-tonne-s")
     parser.add_argument("--output-units", default="m-N-kg-s", metavar="UNITS", help="of the result (default m-N-kg-s)")
-    parser.add_argument(
+    add_assignments(
+        parser,
         "--interface",
-        action="append",
-        type=assignment,
-        default=[],
-        metavar="NAME=WHERE",
-        help="a node set or a node by name (tip=TIP), a node (tip=3), nodes (tip=[3, 11]), or as in machine.yaml, in "
-        "SI (tip={box: {z: [0.3, 0.35]}}); may be repeated",
+        "interface",
+        "NAME=WHERE",
+        "a node set or a node by name (tip=TIP), a node (tip=3), nodes (tip=[3, 11]), or as in machine.yaml, in "
+        "SI (tip={box: {z: [0.3, 0.35]}})",
     )
     parser.add_argument("-n", "--count", type=positive, default=6, help="how many frequencies to show (default 6)")
     parser.add_argument("--modes", type=int, metavar="N", help="fixed-interface modes of a full model (default 3)")
@@ -42,23 +41,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--grounded", action="store_true", help="the part is held to the ground in its file")
     parser.add_argument("--clamp", action="append", default=[], metavar="SET", help="hold a node set to the ground")
-    parser.add_argument(
+    add_assignments(
+        parser,
         "--expect",
-        action="append",
-        type=assignment,
-        default=[],
-        metavar="NAME=VALUE",
-        help="what is known: mass=8.4 (kg), frequency=751 (Hz, the first), tolerance=0.05; else the part is refused",
+        "expect",
+        "NAME=VALUE",
+        "what is known: mass=8.4 (kg), frequency=751 (Hz, the first), tolerance=0.05; else the part is refused",
     )
-    parser.add_argument(
+    add_assignments(
+        parser,
         "--set",
-        dest="settings",
-        action="append",
-        type=assignment,
-        default=[],
-        metavar="OPTION=VALUE",
-        help="an option of the reducer, numbers in SI, such as material.E=2.1e11, or from a file: sections=@s.yaml "
-        "(may be repeated); `prs-model reducers NAME` lists them",
+        "settings",
+        "OPTION=VALUE",
+        "an option of the reducer, numbers in SI, such as material.E=2.1e11, or from a file: sections=@s.yaml; "
+        "`prs-model reducers NAME` lists them",
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from argparse import ArgumentTypeError
+from argparse import ArgumentParser, ArgumentTypeError
 from collections.abc import Mapping, Sequence
 from math import isfinite
 from pathlib import Path
@@ -21,6 +21,13 @@ _SEVERAL = re.compile(r"[^\s,]+(\s*,\s*[^\s,]+)+")
 
 _LENGTH, _ANGLE = Dimension(length=1), Dimension(angle=1)
 _UNITS = {_LENGTH: ("length", get_args(LengthUnit)), _ANGLE: ("angle", get_args(AngleUnit))}
+
+
+def add_assignments(parser: ArgumentParser, flag: str, dest: str, metavar: str, help: str) -> None:
+    """An option such as ``--set PATH=VALUE`` that may be given several times; it gives pairs of texts."""
+    parser.add_argument(
+        flag, dest=dest, action="append", type=assignment, default=[], metavar=metavar, help=f"{help} (may be repeated)"
+    )
 
 
 def assignment(text: str) -> tuple[str, str]:
