@@ -15,8 +15,8 @@ def add_settings(parser: argparse.ArgumentParser) -> None:
         "--set",
         "settings",
         "PATH=VALUE",
-        "change an entry of the description, such as joints.P.drive.nut=1.0e5; bodies.rod=@rod.yaml takes it from a file, "
-        "in which sources are relative to the machine's folder",
+        "change an entry of the description, such as joints.P.drive.nut=1.0e5; bodies.rod=@rod.yaml takes it from a "
+        "file, in which sources are relative to the machine's folder",
     )
 
 
