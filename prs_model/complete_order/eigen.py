@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -42,6 +43,7 @@ class Joined:
         """Number of DOFs."""
         return sum(part.size for part in self.bodies.values())
 
+    @cached_property
     def blocks(self) -> dict[str, slice]:
         """The rows of each body."""
         stops = np.cumsum([part.size for part in self.bodies.values()])
@@ -49,6 +51,17 @@ class Joined:
             name: slice(int(stop) - part.size, int(stop))
             for (name, part), stop in zip(self.bodies.items(), stops, strict=True)
         }
+
+    @cached_property
+    def node_blocks(self) -> dict[str, slice]:
+        """The rows of each body's nodes among those of U."""
+        widths = [part.responses.shape[1] for part in self.bodies.values()]
+        edges = pairwise(np.cumsum([0, *widths]).tolist())
+        return {name: slice(*edge) for name, edge in zip(self.bodies, edges, strict=True)}
+
+    def node_motions(self, shapes: FloatArray) -> FloatArray:
+        """U = D u (6 k, c) of shapes (n, c)."""
+        return np.vstack([part.outputs @ shapes[self.blocks[name]] for name, part in self.bodies.items()])
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,16 +80,16 @@ def lowest(joined: Joined, count: int) -> Solution:
     A residual r = |theta A^-1 M x - x|, in the norm of M, of a Ritz pair (theta, x) of A and M says that an eigenvalue
     lies within r of theta, relative, and about r^2 where no other is as near.
     """
-    solve, blocks = _Inverse(joined), joined.blocks()
-    values, shapes = _first_guess(joined, count + MORE, blocks)
+    solve = _Inverse(joined)
+    values, shapes = _first_guess(joined, count + MORE)
     for iteration in range(1, MOST_ITERATIONS + 1):
-        errors = solve(_times_mass(joined, shapes, blocks)) * values - shapes
-        residuals = np.sqrt(np.einsum("ij,ij->j", errors, _times_mass(joined, errors, blocks)))
+        errors = solve(_times_mass(joined, shapes)) * values - shapes
+        residuals = np.sqrt(np.einsum("ij,ij->j", errors, _times_mass(joined, errors)))
         if np.all(residuals[:count] <= ACCURACY):
             return Solution(values[:count] + joined.shift, shapes[:, :count], residuals[:count], iteration)
         moving = residuals > ACCURACY
         basis = np.hstack([shapes, errors[:, moving] / residuals[moving]])
-        values, shapes = _ritz(joined, _obeying(joined, basis, blocks), len(values), blocks)
+        values, shapes = _ritz(joined, _obeying(joined, basis), len(values))
     raise PrsError(f"the complete-order modes did not come to rest in {MOST_ITERATIONS} iterations")
 
 
@@ -84,7 +97,7 @@ class _Inverse:
     """b (n, c) -> A^-1 b, bodies of one part solved together."""
 
     def __init__(self, joined: Joined):
-        self.joined, self.blocks = joined, joined.blocks()
+        self.joined = joined
         flexibility = block_diag(*(part.flexibility for part in joined.bodies.values()))
         force = 1.0 / np.sqrt(np.diag(flexibility))
         motion = 1.0 / np.linalg.norm(force[:, None] * joined.expansion, axis=0)
@@ -93,26 +106,23 @@ class _Inverse:
         self.scale, self.saddle = scale[:, None], lu_factor(saddle * np.outer(scale, scale))
 
     def __call__(self, loads: FloatArray) -> FloatArray:
-        shapes = np.empty_like(loads)
+        shapes, blocks = np.empty_like(loads), self.joined.blocks
         for part, names in _by_part(self.joined.bodies):
-            stacked = np.hstack([loads[self.blocks[name]] for name in names])
+            stacked = np.hstack([loads[blocks[name]] for name in names])
             for name, each in zip(names, np.split(part.solve(stacked), len(names), axis=1), strict=True):
-                shapes[self.blocks[name]] = each
-        motions = np.vstack([part.outputs @ shapes[self.blocks[name]] for name, part in self.joined.bodies.items()])
+                shapes[blocks[name]] = each
+        motions = self.joined.node_motions(shapes)
         right = np.vstack([motions, np.zeros((len(self.scale) - len(motions), loads.shape[1]))])
-        forces, row = (self.scale * lu_solve(self.saddle, self.scale * right))[: len(motions)], 0
+        forces = (self.scale * lu_solve(self.saddle, self.scale * right))[: len(motions)]
         for name, part in self.joined.bodies.items():
-            width = part.responses.shape[1]
-            shapes[self.blocks[name]] -= part.responses @ forces[row : row + width]
-            row += width
+            shapes[blocks[name]] -= part.responses @ forces[self.joined.node_blocks[name]]
         return shapes
 
 
-def _first_guess(joined: Joined, count: int, blocks: Mapping[str, slice]) -> tuple[FloatArray, FloatArray]:
+def _first_guess(joined: Joined, count: int) -> tuple[FloatArray, FloatArray]:
     """Ritz pairs of A and M among the parts' static shapes u = Y H^-1 E z, on which A is E^T H^-1 E + S_z."""
     parts = joined.bodies.values()
-    starts = np.cumsum([0] + [part.responses.shape[1] for part in parts])
-    nodes = [joined.expansion[a:b] for a, b in pairwise(starts)]
+    nodes = [joined.expansion[rows] for rows in joined.node_blocks.values()]
     loads = [np.linalg.solve(part.flexibility, e) for part, e in zip(parts, nodes, strict=True)]
     stiffness, mass = joined.springs.copy(), np.zeros_like(joined.springs)
     for part, e, load in zip(parts, nodes, loads, strict=True):
@@ -123,19 +133,18 @@ def _first_guess(joined: Joined, count: int, blocks: Mapping[str, slice]) -> tup
     ritz = ritz[:, ::-1] / np.sqrt(inverse[::-1])
     shapes = np.empty((joined.size, count))
     for (name, part), load in zip(joined.bodies.items(), loads, strict=True):
-        shapes[blocks[name]] = part.responses @ (load @ ritz)
+        shapes[joined.blocks[name]] = part.responses @ (load @ ritz)
     return 1.0 / inverse[::-1], shapes
 
 
-def _ritz(joined: Joined, basis: FloatArray, count: int, blocks: Mapping[str, slice]) -> tuple[FloatArray, FloatArray]:
+def _ritz(joined: Joined, basis: FloatArray, count: int) -> tuple[FloatArray, FloatArray]:
     """The `count` lowest Ritz pairs of A and M in a basis (n, c) that obeys rigid joints; vectors mass-normalised."""
     mass, stiffness = np.zeros((2, basis.shape[1], basis.shape[1]))
     for name, part in joined.bodies.items():
-        own = basis[blocks[name]]
+        own = basis[joined.blocks[name]]
         mass += own.T @ (part.model.mass @ own)
         stiffness += own.T @ (part.model.stiffness @ own)
-    motions = np.vstack([part.outputs @ basis[blocks[name]] for name, part in joined.bodies.items()])
-    independent = np.linalg.lstsq(joined.expansion, motions, rcond=None)[0]
+    independent = np.linalg.lstsq(joined.expansion, joined.node_motions(basis), rcond=None)[0]
     stiffness += independent.T @ joined.springs @ independent - joined.shift * mass
     first = len(mass) - count
     inverse, ritz = eigh(_symmetric(mass), _symmetric(stiffness), subset_by_index=[first, len(mass) - 1])
@@ -143,24 +152,22 @@ def _ritz(joined: Joined, basis: FloatArray, count: int, blocks: Mapping[str, sl
     return 1.0 / inverse, basis @ (ritz / np.sqrt(inverse))
 
 
-def _obeying(joined: Joined, basis: FloatArray, blocks: Mapping[str, slice]) -> FloatArray:
+def _obeying(joined: Joined, basis: FloatArray) -> FloatArray:
     """The basis without what round-off has put across the rigid joints, which a Ritz step would make use of."""
     if joined.expansion.shape[0] == joined.expansion.shape[1]:
         return basis
-    motions = np.vstack([part.outputs @ basis[blocks[name]] for name, part in joined.bodies.items()])
+    motions = joined.node_motions(basis)
     gap = motions - joined.expansion @ np.linalg.lstsq(joined.expansion, motions, rcond=None)[0]
-    row = 0
     for name, part in joined.bodies.items():
-        width = part.responses.shape[1]
-        basis[blocks[name]] -= part.responses @ np.linalg.solve(part.flexibility, gap[row : row + width])
-        row += width
+        forces = np.linalg.solve(part.flexibility, gap[joined.node_blocks[name]])
+        basis[joined.blocks[name]] -= part.responses @ forces
     return basis
 
 
-def _times_mass(joined: Joined, shapes: FloatArray, blocks: Mapping[str, slice]) -> FloatArray:
+def _times_mass(joined: Joined, shapes: FloatArray) -> FloatArray:
     product = np.empty_like(shapes)
     for name, part in joined.bodies.items():
-        product[blocks[name]] = part.model.mass @ shapes[blocks[name]]
+        product[joined.blocks[name]] = part.model.mass @ shapes[joined.blocks[name]]
     return product
 
 

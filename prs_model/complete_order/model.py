@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from .. import plugins
 from ..arrays import FloatArray
 from ..description import MachineDescription
 from ..description.schema import Body, Coupling
@@ -16,6 +17,7 @@ from ..finite_elements import FiniteElementModel
 from ..joints import ElasticJoint
 from ..kinematics import Configuration
 from ..reduction.interfaces import interface_ties
+from ..reduction.made import checked_model
 from ..reduction.recipe import Settings
 from ..reduction.request import asked
 from ..synthesis import System, assemble
@@ -117,18 +119,20 @@ class CompleteOrder:
 
 
 def full_part(name: str, body: Body, folder: Path) -> FiniteElementModel:
-    """The full matrices of a body, with what it clamps held. Raises PartFileError for one that comes reduced."""
-    reducer, request = asked(name, body, folder)
-    part = reducer.read(request)
+    """The full matrices of a body, past the physics gate, with what it clamps held.
+
+    Raises PartFileError for one that comes reduced, and what reading and the gate raise.
+    """
+    request = asked(name, body, folder)[1]
+    part = plugins.read(body.reducer, request)
     if not isinstance(part, FiniteElementModel):
         raise PartFileError(request.source or name, f"{name} comes reduced: the complete order needs full matrices")
     logger.info("%s: %d DOFs", name, part.size)
-    return part.clamp(body.clamped) if body.clamped else part
+    return checked_model(part, body, name, str(request.source or name))
 
 
 def _modes(joined: Joined, solution: Solution, system: System) -> CompleteModes:
-    blocks = joined.blocks()
-    motions = np.vstack([part.outputs @ solution.vectors[blocks[name]] for name, part in joined.bodies.items()])
+    motions = joined.node_motions(solution.vectors)
     independent = np.linalg.lstsq(system.expansion, motions, rcond=None)[0]
     return CompleteModes(
         frequencies=np.sqrt(np.maximum(solution.eigenvalues, 0.0)) / (2.0 * np.pi),

@@ -51,6 +51,13 @@ def make_part(
     return MadePart(element, full)
 
 
+def checked_model(model: FiniteElementModel, body: Body, name: str, place: str) -> FiniteElementModel:
+    """Full matrices past the physics gate, with what the body clamps held. Raises PartFileError or PhysicsError."""
+    model = replace(model, provenance={**model.provenance, "name": name, "source": place})
+    check_model(model, grounded=body.grounded, clamped=bool(body.clamped))
+    return model.clamp(body.clamped) if body.clamped else model
+
+
 def _as_reduced(element: SuperElement, body: Body, settings: Settings, place: str) -> SuperElement:
     full_only = {"modes": body.modes is not None, "clamped": bool(body.clamped)}
     for entry, given in full_only.items():
@@ -61,10 +68,7 @@ def _as_reduced(element: SuperElement, body: Body, settings: Settings, place: st
 
 
 def _from_model(model: FiniteElementModel, body: Body, settings: Settings, name: str, place: str) -> Element:
-    model = replace(model, provenance={**model.provenance, "name": name, "source": place})
-    check_model(model, grounded=body.grounded, clamped=bool(body.clamped))
-    if body.clamped:
-        model = model.clamp(body.clamped)
+    model = checked_model(model, body, name, place)
     logger.info("%s: reducing %d DOFs", model.name, model.size)
     travels = travelling_interface(body.interfaces, place) is not None
     return (reduce_travelling if travels else reduce_model)(model, body.interfaces, settings, grounded=body.grounded)
