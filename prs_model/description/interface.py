@@ -15,6 +15,7 @@ Point = tuple[Length, Length, Length]
 NodeId = int | str
 Coupling = Literal["rigid", "averaged"]
 Tie = Literal["joint", "interface"]
+Method = Literal["joint-loaded", "craig-bampton"]
 
 
 def _wrong(message: str) -> PydanticCustomError:

@@ -9,6 +9,7 @@ from pydantic import Discriminator, Field, Tag
 from .interface import Coupling as Coupling
 from .interface import Interface as Interface
 from .interface import Member as Member
+from .interface import Method as Method
 from .interface import Point as Point
 from .interface import Selection as Selection
 from .interface import Tie as Tie
@@ -104,6 +105,7 @@ class Body(Section):
     clamped: tuple[str, ...] = ()  # node sets of the part file held to the ground before reduction
     grounded: bool = False
     expected: Expected | None = None
+    method: Method | None = None
     modes: Annotated[int, Field(ge=0)] | None = None
     coupling: Coupling | None = None
     tie: Tie | None = None
@@ -111,10 +113,11 @@ class Body(Section):
 
 
 class ReductionDefaults(Section):
-    """What bodies use that do not say otherwise."""
+    """What bodies use that do not say otherwise. Coupling and tie follow from the method when they are left out."""
 
-    coupling: Coupling = "rigid"
-    tie: Tie = "joint"
+    method: Method = "craig-bampton"
+    coupling: Coupling | None = None
+    tie: Tie | None = None
     modes: Annotated[int, Field(ge=0)] = 3
     store: str | None = None  # folder of stored super-elements, beside machine.yaml
 

@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from .expand import E, instances, substituted
-from .interface import Tie
 from .problems import Place, Problems, not_known
 from .schema import Body, Closure, Joint, MachineFile
+from .settings import Settings
 from .urdf import Urdf
 
 
@@ -59,14 +59,16 @@ class Subject:
         if name != "ground":
             self._check_reference(place, name, end_names, "'body.interface' or 'ground'")
 
-    def _check_reference(self, place: Place, name: str, names: Callable[[Body, Tie], list[str]], expected: str) -> None:
+    def _check_reference(
+        self, place: Place, name: str, names: Callable[[Body, Settings], list[str]], expected: str
+    ) -> None:
         body, _, node = name.partition(".")
         if not node:
             self.problems.add(place, f"found '{name}', expected {expected}")
         elif body not in self.bodies:
             if not self._is_unsound(body):
                 self.problems.add(place, not_known("a body", body, self.bodies))
-        elif node not in (known := names(self.bodies[body], self.file.reduction.tie)):
+        elif node not in (known := names(self.bodies[body], Settings.of(self.bodies[body], self.file.reduction))):
             told = not_known(f"an interface of body '{body}'", node, known)
             self.problems.add(place, told + _advice(self.bodies[body], node))
 
@@ -77,19 +79,19 @@ class Subject:
         return any(name not in self.file.bodies and body.startswith(name) for name in names)
 
 
-def node_names(body: Body, tie: Tie) -> list[str]:
-    """The nodes a body keeps: one per interface, or one per member of an interface tied there; `tie`: the default."""
+def node_names(body: Body, settings: Settings) -> list[str]:
+    """The nodes a body keeps: one per interface, or one per member of an interface tied there."""
     names: list[str] = []
     for name, interface in body.interfaces.items():
-        apart = (interface.tie or body.tie or tie) == "interface"
+        apart = settings.tie_of(interface) == "interface"
         names += [f"{name}.{member.name}" for member in interface.members if apart]
         names += [] if apart and interface.members else [name]
     return names
 
 
-def end_names(body: Body, tie: Tie) -> list[str]:
+def end_names(body: Body, settings: Settings) -> list[str]:
     """What joints may take hold of: every interface as a whole, and every node."""
-    return list(dict.fromkeys([*body.interfaces, *node_names(body, tie)]))
+    return list(dict.fromkeys([*body.interfaces, *node_names(body, settings)]))
 
 
 def _advice(body: Body, node: str) -> str:

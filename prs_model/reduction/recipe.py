@@ -5,38 +5,15 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ..description.interface import Coupling, Interface, Tie
-from ..description.schema import Body, ReductionDefaults
+from ..description.interface import Interface
+from ..description.schema import Body
 from ..description.section import Section
+from ..description.settings import Settings as Settings
 
 VERSION = 3  # raised when the reduction itself changes its results
-
-
-@dataclass(frozen=True)
-class Settings:
-    """What holds for one body once the machine's defaults are filled in."""
-
-    coupling: Coupling
-    tie: Tie
-    modes: int
-
-    @classmethod
-    def of(cls, body: Body, defaults: ReductionDefaults) -> Settings:
-        return cls(
-            body.coupling or defaults.coupling,
-            body.tie or defaults.tie,
-            defaults.modes if body.modes is None else body.modes,
-        )
-
-    def coupling_of(self, interface: Interface) -> Coupling:
-        return interface.coupling or self.coupling
-
-    def tie_of(self, interface: Interface) -> Tie:
-        return interface.tie or self.tie
 
 
 def recipe(body: Body, options: Section, settings: Settings, reducer_version: int = 1) -> str:
