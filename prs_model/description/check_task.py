@@ -34,6 +34,7 @@ def check_task(subject: Subject) -> None:
             place = ("task", key) if key == "workspace" else ("task", key, "pose")
             _check_names(subject, place, "a pose coordinate", values, plugin.coordinates)
         _check_workspace(subject, plugin.coordinates)
+        _check_verification(subject, plugin.coordinates)
     if subject.urdf is not None:
         _check_joint_values(subject, subject.urdf)
 
@@ -54,6 +55,13 @@ def pose_in_si(file: MachineFile, coordinates: Mapping[str, Dimension]) -> dict[
     """The reference pose, in the order of the task's coordinates."""
     pose = file.task.reference.pose
     return {name: pose[name] * dimension.factor(file.units) for name, dimension in coordinates.items()}
+
+
+def verification_in_si(file: MachineFile, coordinates: Mapping[str, Dimension]) -> dict[str, tuple[float, ...]]:
+    """The values of pose coordinates that the verification section combines; none without that section."""
+    poses = file.verification.poses if file.verification is not None else {}
+    factors = {name: dimension.factor(file.units) for name, dimension in coordinates.items()}
+    return {name: tuple(float(value) * factors[name] for value in values) for name, values in poses.items()}
 
 
 def joints_in_si(file: MachineFile, urdf: Urdf) -> dict[str, float]:
@@ -107,6 +115,16 @@ def _check_workspace(subject: Subject, coordinates: Mapping[str, Dimension]) -> 
             unit = coordinates[name].label(subject.file.units)
             value = task.reference.pose[name]
             _check_range(subject, ("task", "reference", "pose", name), value, (low, high), unit, "the workspace")
+
+
+def _check_verification(subject: Subject, coordinates: Mapping[str, Dimension]) -> None:
+    poses = subject.file.verification.poses if subject.file.verification is not None else {}
+    for name, values in poses.items():
+        place = ("verification", "poses", name)
+        if name not in coordinates:
+            subject.problems.add(place, not_known("a pose coordinate", name, coordinates))
+        elif not values:
+            subject.problems.add(place, "found an empty list, expected the values that the coordinate shall take")
 
 
 def _check_range(

@@ -12,7 +12,7 @@ from pydantic import ValidationError
 from .. import plugins
 from ..errors import DescriptionError, Problem
 from .check_bodies import options_in_si
-from .check_task import joint_dimension, joints_in_si, pose_in_si, workspace_in_si
+from .check_task import joint_dimension, joints_in_si, pose_in_si, verification_in_si, workspace_in_si
 from .checks import check
 from .expand import expanded, instances
 from .messages import report, shown
@@ -48,6 +48,7 @@ class MachineDescription:
     reference_pose: Mapping[str, float]
     reference_joints: Mapping[str, float]
     workspace: Mapping[str, tuple[float, float]]
+    verification_poses: Mapping[str, tuple[float, ...]]
     raw: Mapping[str, Any]
     lines: Mapping[Place, int | None]
 
@@ -172,6 +173,7 @@ def _in_si(
         reference_pose=pose_in_si(file, coordinates),
         reference_joints=joints_in_si(file, urdf),
         workspace=workspace_in_si(file, coordinates),
+        verification_poses=verification_in_si(file, coordinates),
         raw=raw,
         lines=lines,
     )

@@ -28,6 +28,7 @@ from .quantity import (
     Mass,
     Number,
     PositiveLength,
+    PositiveNumber,
     Rate,
     RotationalCompliance,
     RotationalStiffness,
@@ -233,6 +234,7 @@ class Joint(Stage):
     between: tuple[str, str]
     stages: tuple[Stage, ...] = ()
     as_printed: bool = False
+    stiffness_factor: PositiveNumber | None = None  # on all of its stiffness, the drive's included; default 1
     per: str | None = None
 
 
@@ -251,6 +253,15 @@ class Damping(Section):
 
     modal: DampingRatio | None = None
     rayleigh: Rayleigh | None = None
+
+
+class Verification(Section):
+    """Poses at which ``prs-model verify`` holds reduced models against the complete order, besides the reference pose.
+
+    Every combination of these values, in the units of the file; coordinates left out stand at their reference.
+    """
+
+    poses: dict[str, tuple[Number, ...]]
 
 
 class Output(Section):
@@ -275,3 +286,4 @@ class MachineFile(Section):
     joints: dict[str, Joint]
     damping: Damping = Damping()
     output: Output
+    verification: Verification | None = None

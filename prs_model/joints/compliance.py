@@ -32,6 +32,10 @@ class JointCompliance:
         """The joint seen from another frame; `action` (6, 6) takes displacements there (X in eq. 11-14)."""
         return JointCompliance(np.asarray(np.linalg.solve(action.T, self.wrenches)), self.compliance)
 
+    def scaled(self, factor: float) -> JointCompliance:
+        """The joint with `factor` times the stiffness; what is rigid or free stays so."""
+        return JointCompliance(self.wrenches, self.compliance / factor)
+
     @property
     def free_twists(self) -> FloatArray:
         """Basis (6, 6 - m) of the relative displacements that meet no resistance."""

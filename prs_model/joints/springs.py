@@ -59,20 +59,24 @@ class Side:
 
 @dataclass(frozen=True, eq=False)
 class ElasticStage:
-    """A stage whose constant laws are made: the URDF link whose frame it is in, its interfaces, its drive."""
+    """A stage whose constant laws are made: the URDF link whose frame it is in, its interfaces, its drive.
+
+    factor: on the stiffness of its drive; that of its interfaces has it already.
+    """
 
     frame: str
     sides: tuple[Side, ...]
     drive: ConstantDrive | BallScrew | None
     driven: str | None
     free: int | None
+    factor: float = 1.0
 
     def at(self, values: Mapping[str, float]) -> tuple[Side, ...]:
         """All its sides, the drive's among them, when the URDF joints stand at `values` [m, rad]."""
         if self.drive is None or self.driven is None or self.free is None:
             return self.sides
         law = along_axes({self.free: drive_compliance(self.drive, values[self.driven])})
-        return (*self.sides, Side(None, _place(self.drive.at), law))
+        return (*self.sides, Side(None, _place(self.drive.at), law.scaled(self.factor)))
 
     def lumped(self, values: Mapping[str, float]) -> JointCompliance:
         """All its sides gathered at the origin of its frame (eq. 11, 12)."""
@@ -121,7 +125,7 @@ def elastic_joints(description: MachineDescription) -> tuple[ElasticJoint, ...]:
         ElasticJoint(
             name,
             joint.between,
-            tuple(_stage(stage, urdf) for stage in joint.stages or (joint,)),
+            tuple(_stage(stage, urdf, float(joint.stiffness_factor or 1.0)) for stage in joint.stages or (joint,)),
             bool(joint.stages),
             joint.as_printed,
         )
@@ -153,14 +157,15 @@ def elastic_law(law: ElasticLaw, free: int | None) -> JointCompliance:
     return JointCompliance(np.eye(6)[:, constrained], compliance[np.ix_(constrained, constrained)])
 
 
-def _stage(stage: Stage, urdf: Urdf) -> ElasticStage:
+def _stage(stage: Stage, urdf: Urdf, factor: float) -> ElasticStage:
     free = free_axis(stage, urdf)
     if stage.interfaces:
-        sides = tuple(Side(face.name, _place(face.at), elastic_law(face, free)) for face in stage.interfaces)
+        faces = [(face.name, _place(face.at), elastic_law(face, free)) for face in stage.interfaces]
     else:
-        sides = (Side(None, pin.SE3.Identity(), elastic_law(stage, free)),)
+        faces = [(None, pin.SE3.Identity(), elastic_law(stage, free))]
+    sides = tuple(Side(name, place, law.scaled(factor)) for name, place, law in faces)
     frame = urdf.joints[stage.urdf].child if stage.urdf is not None else str(stage.frame)
-    return ElasticStage(frame, sides, stage.drive, stage.urdf, free)
+    return ElasticStage(frame, sides, stage.drive, stage.urdf, free, factor)
 
 
 def _place(at: tuple[float, float, float] | None) -> pin.SE3:
