@@ -3,31 +3,22 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 
-import numpy as np
-
-from .. import plugins
 from ..arrays import FloatArray
 from ..description import MachineDescription
-from ..description.schema import Body, Coupling
-from ..errors import PartFileError
-from ..finite_elements import FiniteElementModel
+from ..description.schema import Coupling
 from ..joints import ElasticJoint
 from ..kinematics import Configuration
-from ..reduction.interfaces import interface_ties
-from ..reduction.made import checked_model
-from ..reduction.recipe import Settings
-from ..reduction.request import asked
+from ..modes import Modes
+from ..reduction.super_element import SuperElement
 from ..synthesis import System, assemble
-from .eigen import Joined, Solution, lowest
-from .part import CompletePart, Factorized, factorized, with_interfaces
-
-Contact = tuple[str, tuple[float, ...]]
-"""A kind of part, and how far its contact has moved."""
-
-SLOW = 1e-2  # the shift's share of the joints' stiffness over the machine's mass
+from .eigen import lowest
+from .inverse import Joined
+from .part import CompletePart
+from .stock import Stock
+from .subspace import enlarged, pictured, rigid_motions
 
 logger = logging.getLogger("prs_model")
 
@@ -36,18 +27,20 @@ logger = logging.getLogger("prs_model")
 class CompleteModes:
     """Modes of the complete order at one pose.
 
-    frequencies (c,) [Hz]. residuals (c,): relative error bounds of the squared frequencies. node_motions (6 k, c): of
-    all interface nodes in body axes, mass-normalised, rows as in `system`, which has these nodes and the joints only.
-    output_motions (6, c): of the end-reference point, in output axes. size: number of DOFs. iterations: taken.
+    modes: with energies, characters and surfaces as those of a reduced system have them. Their coordinates are each
+    body's rigid motions and its shapes in these very modes, so nothing else of that system is to be relied on.
+    residuals (c,): relative error bounds of the squared frequencies. size: number of DOFs. iterations: taken.
     """
 
-    frequencies: FloatArray
+    modes: Modes
     residuals: FloatArray
-    node_motions: FloatArray
-    output_motions: FloatArray
-    system: System
     size: int
     iterations: int
+
+    @property
+    def frequencies(self) -> FloatArray:
+        """(c,) [Hz]."""
+        return self.modes.frequencies
 
 
 class CompleteOrder:
@@ -61,94 +54,35 @@ class CompleteOrder:
         self, description: MachineDescription, joints: tuple[ElasticJoint, ...], coupling: Coupling = "averaged"
     ):
         self.description, self.joints = description, joints
-        self.settings = Settings(coupling, "interface", 0)
-        self._models: dict[str, FiniteElementModel] = {}
-        self._factorized: dict[str, Factorized] = {}
-        self._parts: dict[Contact, CompletePart] = {}
-        self._shift: float | None = None
+        self._stock = Stock(description, joints, coupling)
 
     def modes(self, configuration: Configuration, count: int = 8) -> CompleteModes:
         """The lowest modes in a configuration.
 
         Raises PartFileError for a part that comes reduced, PrsError when the iteration does not come to rest.
         """
-        bodies, shift = self.parts(configuration), self._shift_for(configuration)
-        stand_ins = {name: part.stand_in(self.description.bodies[name].grounded) for name, part in bodies.items()}
-        system = assemble(self.description, stand_ins, self.joints, configuration)
-        joined = Joined(bodies, system.stiffness, system.expansion, shift)
-        logger.info("complete order: %d DOFs, %d interface nodes", joined.size, len(system.expansion) // 6)
-        return _modes(joined, lowest(joined, count), system)
+        spaces = self._stock.subspaces(configuration)
+        joined = self._joined({name: space.part for name, space in spaces.items()}, configuration)
+        logger.info("complete order: %d DOFs, %d interface nodes", joined.size, len(joined.expansion) // 6)
+        solution = lowest(joined, spaces, lambda elements: self._assembled(elements, configuration), count)
+        logger.info("complete order: %d modes, iterations: %d", count, solution.iterations)
+        elements = {
+            name: pictured(enlarged(rigid_motions(part), solution.shapes[name])) for name, part in joined.bodies.items()
+        }
+        modes = self._assembled(elements, configuration).modes(count)
+        return CompleteModes(modes, solution.residuals, joined.size, solution.iterations)
 
-    def parts(self, configuration: Configuration) -> dict[str, CompletePart]:
-        """The part of every body, with its interfaces where they are in a configuration. Raises PartFileError."""
-        shift = self._shift_for(configuration)
-        here: dict[Contact, CompletePart] = {}
-        return {name: self._part(name, configuration, shift, here) for name in self.description.bodies}
+    def joined(self, configuration: Configuration) -> Joined:
+        """The parts of all bodies, with their interfaces where they are in a configuration, and what joins them.
 
-    def _shift_for(self, configuration: Configuration) -> float:
-        """s < 0 [rad^2/s^2], slow beside the joints, to hold free parts a little; the first pose decides."""
-        if self._shift is None:
-            values, placement = configuration.joint_values, configuration.placement
-            springs = [spring for joint in self.joints for spring in joint.springs(values, placement)]
-            stiffness = sum(float(np.trace(spring.law.stiffness[:3, :3])) for spring in springs)
-            mass = sum(self._model(name).mass_properties().mass for name in self.description.bodies)
-            self._shift = -SLOW * stiffness / mass
-        return self._shift
+        Raises PartFileError for a part that comes reduced.
+        """
+        parts = {name: space.part for name, space in self._stock.subspaces(configuration).items()}
+        return self._joined(parts, configuration)
 
-    def _model(self, name: str) -> FiniteElementModel:
-        """The full matrices of a body, those of identical limbs once. Raises PartFileError for a reduced part."""
-        stem, body = self.description.stems[name], self.description.bodies[name]
-        if stem not in self._models:
-            self._models[stem] = full_part(stem, body, self.description.folder)
-        return self._models[stem]
+    def _joined(self, parts: Mapping[str, CompletePart], configuration: Configuration) -> Joined:
+        system = self._assembled({name: part.stand_in() for name, part in parts.items()}, configuration)
+        return Joined(parts, system.stiffness, system.expansion)
 
-    def _part(
-        self, name: str, configuration: Configuration, shift: float, here: dict[Contact, CompletePart]
-    ) -> CompletePart:
-        """The part of a body; one whose contact travels is kept for this configuration only, in `here`."""
-        stem, body = self.description.stems[name], self.description.bodies[name]
-        moved = _moved_contact(body, configuration)
-        kept, key = (self._parts, (stem, ())) if moved is None else (here, (stem, tuple(np.round(moved, 12))))
-        if key not in kept:
-            model = self._model(name)
-            if stem not in self._factorized:
-                self._factorized[stem] = factorized(model, shift)
-            ties = interface_ties(model, body.interfaces, self.settings, np.zeros(3) if moved is None else moved)
-            kept[key] = with_interfaces(self._factorized[stem], ties, shift)
-        return kept[key]
-
-
-def full_part(name: str, body: Body, folder: Path) -> FiniteElementModel:
-    """The full matrices of a body, past the physics gate, with what it clamps held.
-
-    Raises PartFileError for one that comes reduced, and what reading and the gate raise.
-    """
-    request = asked(name, body, folder)[1]
-    part = plugins.read(body.reducer, request)
-    if not isinstance(part, FiniteElementModel):
-        raise PartFileError(request.source or name, f"{name} comes reduced: the complete order needs full matrices")
-    logger.info("%s: %d DOFs", name, part.size)
-    return checked_model(part, body, name, str(request.source or name))
-
-
-def _modes(joined: Joined, solution: Solution, system: System) -> CompleteModes:
-    motions = joined.node_motions(solution.vectors)
-    independent = np.linalg.lstsq(system.expansion, motions, rcond=None)[0]
-    return CompleteModes(
-        frequencies=np.sqrt(np.maximum(solution.eigenvalues, 0.0)) / (2.0 * np.pi),
-        residuals=solution.residuals,
-        node_motions=motions,
-        output_motions=system.output @ independent,
-        system=system,
-        size=joined.size,
-        iterations=solution.iterations,
-    )
-
-
-def _moved_contact(body: Body, configuration: Configuration) -> FloatArray | None:
-    """How far (3,) [m] the travelling interface of a body has moved; None for a body that has none."""
-    for interface in body.interfaces.values():
-        if (travel := interface.travel) is not None:
-            direction = np.array(travel.along, dtype=float)
-            return np.asarray(direction / np.linalg.norm(direction) * configuration.joint_values[travel.joint])
-    return None
+    def _assembled(self, elements: Mapping[str, SuperElement], configuration: Configuration) -> System:
+        return assemble(self.description, elements, self.joints, configuration)

@@ -37,11 +37,24 @@ class Surface:
         return Surface(self.points, self.triangles, np.asarray(self.recovery @ projection, dtype=np.float32))
 
 
-def decimate(model: FiniteElementModel, basis: FloatArray, most_triangles: int = MOST_TRIANGLES) -> Surface | None:
-    """The model's outer surface with about `most_triangles`; None for a model without one.
+@dataclass(frozen=True, eq=False)
+class Skin:
+    """Few points (p, 3) [m] of a model's outer surface, triangles (t, 3) of them, and the node (p,) each follows."""
 
-    The points are those of a simplified surface; each moves as the nearest finite-element node does under
-    `basis` (n, r).
+    points: FloatArray
+    triangles: IntArray
+    nodes: IntArray
+
+    def rows(self, model: FiniteElementModel) -> IntArray:
+        """(p, 3): the rows of the points' translations in the model, -1 where the node is held."""
+        return model.rows[self.nodes, :3]
+
+
+def skin(model: FiniteElementModel, most_triangles: int = MOST_TRIANGLES) -> Skin | None:
+    """The model's outer surface simplified to about `most_triangles`; None for a model without one.
+
+    A point follows the finite-element node nearest to it. The choice depends on the mesh alone, so that all models of
+    one part, reduced or not, are seen at the same points.
     """
     if model.triangles is None:
         return None
@@ -51,9 +64,17 @@ def decimate(model: FiniteElementModel, basis: FloatArray, most_triangles: int =
     if len(triangles) > most_triangles:
         points, triangles = _simplified(points, triangles, most_triangles)
     nearest = nodes[cKDTree(model.coordinates[nodes]).query(points)[1]]
-    rows = model.rows[nearest, :3]
+    return Skin(points, triangles, nearest)
+
+
+def decimate(model: FiniteElementModel, basis: FloatArray, most_triangles: int = MOST_TRIANGLES) -> Surface | None:
+    """The skin of a model, its points moving as their nodes do under `basis` (n, r); None for one without surface."""
+    seen = skin(model, most_triangles)
+    if seen is None:
+        return None
+    rows = seen.rows(model)
     recovery = np.where((rows >= 0)[..., None], basis[rows], 0.0).astype(np.float32)
-    return Surface(points, triangles, recovery)
+    return Surface(seen.points, seen.triangles, recovery)
 
 
 def _simplified(points: FloatArray, triangles: IntArray, count: int) -> tuple[FloatArray, IntArray]:

@@ -58,13 +58,14 @@ def test_woodbury_equals_the_monolithic_matrix(tmp_path, coupling, law):
     machine = pair(tmp_path, coupling, law)
     complete = machine.complete_order(coupling)
     modes = complete.modes(machine.configuration(), 6)
-    bodies, system = complete.parts(machine.configuration()), modes.system
+    joined = complete.joined(machine.configuration())
+    bodies = joined.bodies
     stiffness = block_diag(*(part.model.stiffness.toarray() for part in bodies.values()))
     mass = block_diag(*(part.model.mass.toarray() for part in bodies.values()))
     outputs = block_diag(*(part.outputs.toarray() for part in bodies.values()))
-    independent = np.linalg.pinv(system.expansion) @ outputs
-    stiffness += independent.T @ system.stiffness @ independent
-    allowed = null_space(outputs - system.expansion @ independent, rcond=1e-9)
+    independent = np.linalg.pinv(joined.expansion) @ outputs
+    stiffness += independent.T @ joined.springs @ independent
+    allowed = null_space(outputs - joined.expansion @ independent, rcond=1e-9)
     stiffness, mass = (allowed.T @ matrix @ allowed for matrix in (stiffness, mass))
     values = eigh(stiffness, mass, eigvals_only=True, subset_by_index=[0, 5])
     assert modes.frequencies == pytest.approx(np.sqrt(values) / (2.0 * np.pi), rel=1e-8)
@@ -80,13 +81,26 @@ def test_reduced_frequencies_lie_above(tmp_path, coupling):
     assert reduced[:3] == pytest.approx(complete.frequencies[:3], rel=2e-3)
 
 
-def test_motions_are_those_of_the_reduced_modes(tmp_path):
-    machine = pair(tmp_path, "averaged", ELASTIC)
-    complete = machine.complete_order().modes(machine.configuration(), 3)
-    tool = machine.modes(3).output_shapes
-    for k in range(3):
-        a, b = complete.output_motions[:, k], tool[:, k]
-        assert (a @ b) ** 2 == pytest.approx((a @ a) * (b @ b), rel=1e-3)
+@pytest.mark.parametrize("coupling", ["averaged", "rigid"])
+def test_shapes_and_energies_are_those_of_the_reduced_modes(tmp_path, coupling):
+    machine = pair(tmp_path, coupling, ELASTIC)
+    complete, reduced = machine.complete_order(coupling).modes(machine.configuration(), 3).modes, machine.modes(3)
+    assert complete.frequencies == pytest.approx(reduced.frequencies, rel=2e-3)
+    for a, b in zip(seen(complete), seen(reduced), strict=True):
+        assert (a @ b) ** 2 == pytest.approx((a @ a) * (b @ b), rel=2e-3)
+    for energy in ("kinetic_energy", "strain_energy"):
+        one, other = getattr(complete, energy)(), getattr(reduced, energy)()
+        assert one.keys() == other.keys()
+        assert all(one[name] == pytest.approx(other[name], abs=5e-3) for name in one)
+    assert [(c.group, c.motion, c.output) for c in complete.characters()] == [
+        (c.group, c.motion, c.output) for c in reduced.characters()
+    ]
+
+
+def seen(modes: prs.Modes) -> np.ndarray:
+    """Motions of the output point and of the surface points of all bodies, a row for each mode."""
+    surfaces = [e.surface.recovery @ modes.body_shapes(name) for name, e in modes.system.elements.items()]
+    return np.vstack([modes.output_shapes, *(each.reshape(-1, each.shape[-1]) for each in surfaces)]).T
 
 
 def test_a_reduced_part_is_refused():
