@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-import os
-import tempfile
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import dataclass
-from errno import EISDIR
 from math import ceil
 from pathlib import Path
 from types import SimpleNamespace
@@ -17,7 +13,8 @@ import numpy as np
 import pinocchio as pin
 
 from ..arrays import FloatArray, IntArray
-from ..errors import MissingExtraError, PrsError, short
+from ..errors import MissingExtraError, PrsError
+from .figure_file import check_writable, write_figure
 
 if TYPE_CHECKING:
     from .modes import Modes
@@ -33,10 +30,7 @@ def check_picture_file(path: Path) -> None:
     """Raise PrsError now if a picture could not be written to `path` later."""
     if path.suffix.lower() not in _FORMATS:
         raise PrsError(f"{path}: found a name ending in '{path.suffix}', expected one of {', '.join(_FORMATS)}")
-    with _told(path):
-        if path.is_dir():
-            raise IsADirectoryError(EISDIR, "it is a folder")
-        _temporary(path).unlink()
+    check_writable(path)
     _matplotlib()
 
 
@@ -66,7 +60,7 @@ def draw_modes(modes: Modes, path: Path, title: str = "") -> None:
     bar = figure.colorbar(plt.scale, ax=figure.axes, orientation="horizontal", shrink=0.3, aspect=40, pad=0.01)
     bar.set_label("displacement / largest displacement of the mode", fontsize=8)
     figure.suptitle(title)
-    _write(figure, path)
+    write_figure(figure, path)
 
 
 @dataclass(frozen=True)
@@ -149,34 +143,6 @@ def _set_view(axes: Any, low: FloatArray, high: FloatArray) -> None:
     axes.set_axis_off()
     axes.set_box_aspect(size, zoom=1.12)
     axes.view_init(elev=20, azim=-35)
-
-
-def _write(figure: Any, path: Path) -> None:
-    with _told(path):
-        complete = _temporary(path)
-        try:
-            figure.savefig(complete, dpi=110)
-            complete.chmod(0o644)
-            complete.replace(path)
-        finally:
-            complete.unlink(missing_ok=True)
-
-
-def _temporary(path: Path) -> Path:
-    """A new empty file beside `path`."""
-    handle, name = tempfile.mkstemp(dir=path.parent, suffix=path.suffix.lower())
-    os.close(handle)
-    return Path(name)
-
-
-@contextmanager
-def _told(path: Path) -> Iterator[None]:
-    """Whatever keeps a file from being written becomes a PrsError."""
-    try:
-        yield
-    except OSError as error:
-        expected = "expected a file name in a folder that exists and is writable"
-        raise PrsError(f"{short(path)}: cannot be written ({error.strerror or error}); {expected}") from error
 
 
 def _matplotlib() -> SimpleNamespace:
