@@ -13,25 +13,24 @@ _TIE: dict[Method, Tie] = {"joint-loaded": "interface", "craig-bampton": "joint"
 
 @dataclass(frozen=True)
 class Settings:
-    """What holds for one body. The interfaces may differ in coupling and tie."""
+    """What holds for one body; coupling and tie are those of the method where they are None."""
 
-    coupling: Coupling
-    tie: Tie
+    coupling: Coupling | None
+    tie: Tie | None
     modes: int
     method: Method = "craig-bampton"
 
     @classmethod
     def of(cls, body: Body, defaults: ReductionDefaults) -> Settings:
-        method = body.method or defaults.method
         return cls(
-            body.coupling or defaults.coupling or _COUPLING[method],
-            body.tie or defaults.tie or _TIE[method],
+            body.coupling or defaults.coupling,
+            body.tie or defaults.tie,
             defaults.modes if body.modes is None else body.modes,
-            method,
+            body.method or defaults.method,
         )
 
     def coupling_of(self, interface: Interface) -> Coupling:
-        return interface.coupling or self.coupling
+        return interface.coupling or self.coupling or _COUPLING[self.method]
 
     def tie_of(self, interface: Interface) -> Tie:
-        return interface.tie or self.tie
+        return interface.tie or self.tie or _TIE[self.method]

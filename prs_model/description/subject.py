@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from .. import plugins
+from ..errors import PluginError, UnknownNameError
 from .expand import E, instances, substituted
 from .problems import Place, Problems, not_known
 from .schema import Body, Closure, Joint, MachineFile
@@ -68,9 +70,18 @@ class Subject:
         elif body not in self.bodies:
             if not self._is_unsound(body):
                 self.problems.add(place, not_known("a body", body, self.bodies))
-        elif node not in (known := names(self.bodies[body], Settings.of(self.bodies[body], self.file.reduction))):
+        elif node not in (known := names(self.bodies[body], self._settings(self.bodies[body]))):
             told = not_known(f"an interface of body '{body}'", node, known)
             self.problems.add(place, told + _advice(self.bodies[body], node))
+
+    def _settings(self, body: Body) -> Settings:
+        """How a body is reduced; what comes reduced is not loaded by joints."""
+        settings = Settings.of(body, self.file.reduction)
+        try:
+            comes_reduced = plugins.reducer(body.reducer).gives == "reduced"
+        except (UnknownNameError, PluginError):  # told at the body's own entry
+            comes_reduced = False
+        return replace(settings, method="craig-bampton") if comes_reduced else settings
 
     def _is_unsound(self, body: str) -> bool:
         """Whether a body is missing only because its entry has problems of its own."""

@@ -93,6 +93,11 @@ class ElasticJoint:
     in_series: bool
     as_printed: bool
 
+    @property
+    def moves(self) -> bool:
+        """Whether it has an axis along or about which it moves: bearings do, bolts do not."""
+        return any(stage.free is not None for stage in self.stages)
+
     def springs(self, values: Mapping[str, float], placement: Placement) -> list[Spring]:
         """The springs in one configuration (eq. 9-14).
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -34,6 +34,11 @@ class Configuration:
     def placement(self, frame: str) -> pin.SE3:
         """Placement of a URDF link, seen from the root link [m]. Raises UnknownNameError."""
         return pin.SE3(self.tree.placements(self._frames, frame)[0])
+
+    def moved(self, joint_values: Mapping[str, float]) -> Configuration:
+        """The same with some joints [m, rad] elsewhere, loops open as they may be."""
+        q = np.array([{**self.joint_values, **joint_values}[name] for name in self.tree.names])
+        return replace(self, q=q, closure_residual=float("inf"))
 
     @cached_property
     def _frames(self) -> Frames:

@@ -38,7 +38,12 @@ class Released:
 
 
 def reduction_per_station(
-    model: FiniteElementModel, ties: Sequence[Sequence[Tie]], moving: BoolArray, n_modes: int, grounded: bool
+    model: FiniteElementModel,
+    ties: Sequence[Sequence[Tie]],
+    moving: BoolArray,
+    n_modes: int,
+    grounded: bool,
+    basis: str = "craig-bampton",
 ) -> tuple[tuple[SuperElement, ...], FloatArray]:
     """One super-element per station and the products V_i^T M V_j (s, s, n, n) of their bases.
 
@@ -60,7 +65,8 @@ def reduction_per_station(
             released = _release(model, fixed, contact, n_modes, released)
         reduction = _reduction(model, released, _contact_motion(model, released, contact), moving)
         arms = np.array([tie.position for tie in station]) - references
-        elements.append(to_element(model, station, reduction, grounded=grounded, arms=arms, modes="contact released"))
+        kind = {"modes": "contact released", "basis": basis}
+        elements.append(to_element(model, station, reduction, grounded=grounded, arms=arms, **kind))
         bases.append(reduction.basis)
     images = [model.mass @ basis for basis in bases]
     return tuple(elements), np.array([[basis.T @ image for image in images] for basis in bases])

@@ -14,12 +14,14 @@ from ..finite_elements.rigid_motion import transfer
 from .box import ENTRY as BOX
 from .box import box_text
 from .coupling import Tie
-from .craig_bampton import Reduction, craig_bampton
+from .craig_bampton import Reduction, craig_bampton, ritz_craig_bampton
 from .interfaces import interface_ties
 from .recipe import Settings
 from .super_element import SuperElement, node_labels
 from .surface import decimate
 from .surprising_ties import warn_of_surprises
+
+AWAITS_JOINTS = "awaits joints"
 
 
 def reduce_model(
@@ -35,6 +37,8 @@ def reduce_model(
         )
     ties = interface_ties(model, interfaces, settings)
     warn_of_surprises(model, ties)
+    if settings.method == "joint-loaded":
+        return to_element(model, ties, ritz_craig_bampton(model, ties), grounded=grounded, basis=AWAITS_JOINTS)
     return to_element(model, ties, craig_bampton(model, ties, settings.modes), grounded=grounded)
 
 
@@ -46,6 +50,7 @@ def to_element(
     grounded: bool,
     arms: FloatArray | None = None,
     modes: str = "fixed-interface",
+    basis: str = "craig-bampton",
 ) -> SuperElement:
     """A reduction as a super-element: six coordinates per tie, then the modes, of the kind `modes`.
 
@@ -64,5 +69,11 @@ def to_element(
         grounded=grounded,
         surface=decimate(model, reduction.basis),
         labels=(*labels, *(f"mode {i + 1}" for i in range(p))),
-        provenance={**model.provenance, "modes": modes, "full_dofs": str(model.size), BOX: box_text(model.coordinates)},
+        provenance={
+            **model.provenance,
+            "modes": modes,
+            "basis": basis,
+            "full_dofs": str(model.size),
+            BOX: box_text(model.coordinates),
+        },
     )

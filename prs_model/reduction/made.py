@@ -64,7 +64,7 @@ def _as_reduced(element: SuperElement, body: Body, settings: Settings, place: st
         if given:
             raise PartFileError(place, f"{entry}: the part is already reduced, and keeps what it has; remove '{entry}'")
     element = replace(element, grounded=element.grounded or body.grounded)
-    return at_interfaces(element, body.interfaces, settings, place)
+    return at_interfaces(element, body.interfaces, replace(settings, method="craig-bampton"), place)
 
 
 def _from_model(model: FiniteElementModel, body: Body, settings: Settings, name: str, place: str) -> Element:

@@ -13,7 +13,7 @@ from ..description.schema import Body
 from ..description.section import Section
 from ..description.settings import Settings as Settings
 
-VERSION = 3  # raised when the reduction itself changes its results
+VERSION = 4  # raised when the reduction itself changes its results
 
 
 def recipe(body: Body, options: Section, settings: Settings, reducer_version: int = 1) -> str:
@@ -29,7 +29,8 @@ def recipe(body: Body, options: Section, settings: Settings, reducer_version: in
         "order": list(body.interfaces),
         "clamped": sorted(body.clamped),
         "grounded": body.grounded,
-        "modes": settings.modes,
+        "method": settings.method,
+        **({"modes": settings.modes} if settings.method == "craig-bampton" else {}),
     }
     return json.dumps(content, sort_keys=True, separators=(",", ":"))
 

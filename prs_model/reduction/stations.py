@@ -15,7 +15,7 @@ from ..finite_elements import FiniteElementModel
 from .contact import reduction_per_station
 from .coupling import Tie
 from .craig_bampton import craig_bampton
-from .from_model import to_element
+from .from_model import AWAITS_JOINTS, to_element
 from .interfaces import interface_ties
 from .recipe import Settings
 from .super_element import SuperElement
@@ -60,7 +60,9 @@ def reduce_travelling(
         raise PartFileError(
             model.source, f"interfaces.{name}: the part has no other interface and no ground to be held by; add one"
         )
-    elements, products = reduction_per_station(model, ties, np.array(moving), settings.modes, grounded)
+    joint_loaded = settings.method == "joint-loaded"
+    n_modes, basis = (0, AWAITS_JOINTS) if joint_loaded else (settings.modes, "craig-bampton")
+    elements, products = reduction_per_station(model, ties, np.array(moving), n_modes, grounded, basis)
     return TravellingElement(travel.joint, stations, elements, products)
 
 

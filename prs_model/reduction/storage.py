@@ -20,7 +20,7 @@ from .surface import Surface
 from .travelling import TravellingElement
 
 FORMAT = "prs-model super-element"
-VERSION = 2
+VERSION = 3
 
 Arrays = dict[str, NDArray[Any]]
 
@@ -115,7 +115,10 @@ def _header(element: SuperElement) -> dict[str, Any]:
 
 
 def _arrays(stations: tuple[SuperElement, ...]) -> Arrays:
-    """Arrays stacked over the stations; what is the same at all of them is stored once."""
+    """Arrays stacked over the stations; what is the same at all of them is stored once.
+
+    A surface's recovery, for pictures, is stored in half precision of each column's largest entry.
+    """
     arrays: Arrays = {
         name: _stacked([getattr(each, name) for each in stations])
         for name in ("stiffness", "mass", "positions", "motions")
@@ -123,8 +126,16 @@ def _arrays(stations: tuple[SuperElement, ...]) -> Arrays:
     surfaces = [each.surface for each in stations if each.surface is not None]
     if len(surfaces) == len(stations):
         arrays["points"], arrays["triangles"] = surfaces[0].points, surfaces[0].triangles
-        arrays["recovery"] = _stacked([surface.recovery for surface in surfaces])
+        units = [_unit(surface.recovery) for surface in surfaces]
+        halved = [(each.recovery / unit).astype(np.float16) for each, unit in zip(surfaces, units, strict=True)]
+        arrays["recovery"], arrays["recovery_unit"] = _stacked(halved), _stacked(units)
     return arrays
+
+
+def _unit(recovery: NDArray[Any]) -> NDArray[Any]:
+    """(n,): the power of two at or above the largest entry of each column, so that storing again changes nothing."""
+    largest = np.abs(recovery).max(axis=(0, 1), initial=0.0)
+    return np.exp2(np.ceil(np.log2(np.where(largest > 0.0, largest, 1.0))))
 
 
 def _stacked(parts: list[NDArray[Any]]) -> NDArray[Any]:
@@ -154,7 +165,9 @@ def _station(header: _Header, arrays: Arrays, index: int) -> SuperElement:
     def of(name: str) -> NDArray[Any]:
         return np.asarray(arrays[name][index if len(arrays[name]) > 1 else 0])
 
-    surface = _surface(arrays, of("recovery"), of("stiffness").shape[0]) if "points" in arrays else None
+    surface = None
+    if "points" in arrays:
+        surface = _surface(arrays, of("recovery"), of("recovery_unit"), of("stiffness").shape[0])
     return SuperElement(
         stiffness=of("stiffness"),
         mass=of("mass"),
@@ -170,14 +183,14 @@ def _station(header: _Header, arrays: Arrays, index: int) -> SuperElement:
     )
 
 
-def _surface(arrays: Arrays, recovery: NDArray[Any], size: int) -> Surface:
+def _surface(arrays: Arrays, recovery: NDArray[Any], unit: NDArray[Any], size: int) -> Surface:
     points, triangles = arrays["points"], arrays["triangles"]
     p = len(points)
     if points.shape != (p, 3) or triangles.ndim != 2 or triangles.shape[1] != 3 or triangles.dtype.kind != "i":
         raise ValueError(f"points have shape {points.shape} and triangles {triangles.shape} of {triangles.dtype}")
-    if recovery.shape != (p, 3, size) or not np.all((triangles >= 0) & (triangles < p)):
+    if recovery.shape != (p, 3, size) or unit.shape != (size,) or not np.all((triangles >= 0) & (triangles < p)):
         raise ValueError(f"recovery has shape {recovery.shape}, expected {(p, 3, size)}, or triangles are of no point")
-    return Surface(points, triangles, recovery)
+    return Surface(points, triangles, (recovery * unit).astype(np.float32))
 
 
 def _damaged(path: Path, error: Exception) -> PartFileError:

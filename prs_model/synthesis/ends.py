@@ -38,7 +38,7 @@ class Ends:
     def relative_displacement(self, spring: Spring) -> RelativeDisplacement:
         """What the spring feels; both ends may be on one body, one may be the ground."""
         signed = [(end, sign) for end, sign in zip(spring.between, (-1.0, 1.0), strict=True) if end != "ground"]
-        motions = [(sign, *self._motion(end, spring.interface, spring.placement)) for end, sign in signed]
+        motions = [(sign, *self.motion(end, spring.interface, spring.placement)) for end, sign in signed]
         rows, place = np.unique(np.concatenate([rows for _, rows, _ in motions]), return_inverse=True)
         motion, size = np.zeros((len(rows), 6)), np.zeros((len(rows), 6))
         np.add.at(motion, place, np.hstack([sign * each for sign, _, each in motions]).T)
@@ -52,9 +52,9 @@ class Ends:
         return float(np.linalg.norm(points[0] - other))
 
     def _node_place(self, end: str, interface: str | None) -> FloatArray:
-        body, node = end.split(".", 1)
+        body = end.split(".", 1)[0]
         element = self.elements[body]
-        middle = np.mean([element.positions[k] for k in _nodes(element, node, interface)], axis=0)
+        middle = np.mean([element.positions[k] for k in self.nodes(end, interface)], axis=0)
         return np.asarray(self.placements[body].act(middle))
 
     def output(self, output: Output, frame: pin.SE3) -> tuple[pin.SE3, IntArray, FloatArray]:
@@ -63,29 +63,30 @@ class Ends:
         element = self.elements[body]
         position = self.placements[body].act(element.positions[element.node(node)])
         place = pin.SE3(frame.rotation, position)
-        return place, *self._motion(output.node, None, place)
+        return place, *self.motion(output.node, None, place)
 
-    def _motion(self, end: str, interface: str | None, place: pin.SE3) -> tuple[IntArray, FloatArray]:
-        body, node = end.split(".", 1)
+    def motion(self, end: str, interface: str | None, place: pin.SE3) -> tuple[IntArray, FloatArray]:
+        """Coordinates (k,) of an end's body, and the end's motion (6, k) on them as seen at `place`, in its axes."""
+        body = end.split(".", 1)[0]
         element, block = self.elements[body], self.blocks[body]
-        nodes = _nodes(element, node, interface)
+        nodes = self.nodes(end, interface)
         to_place = place.inverse() * self.placements[body]
         motion = sum(_seen_from(to_place, element, k) for k in nodes) / len(nodes)
         return np.arange(block.start, block.stop), np.asarray(motion)
+
+    def nodes(self, end: str, interface: str | None) -> Sequence[int]:
+        """The interface's own node, else the joint's, else all of the joint's interfaces (their mean is taken)."""
+        body, node = end.split(".", 1)
+        names = self.elements[body].nodes
+        for name in (f"{node}.{interface}", node):
+            if name in names:
+                return [names.index(name)]
+        found = [k for k, name in enumerate(names) if name.startswith(f"{node}.")]
+        if not found:
+            raise UnknownNameError(f"node of {self.elements[body].name}", node, names)
+        return found
 
 
 def _seen_from(to_place: pin.SE3, element: SuperElement, k: int) -> FloatArray:
     node = to_place * pin.SE3(np.eye(3), element.positions[k])
     return np.asarray(node.toActionMatrix() @ element.motions[k])
-
-
-def _nodes(element: SuperElement, node: str, interface: str | None) -> Sequence[int]:
-    """The interface's own node, else the joint's, else all nodes of the joint's interfaces (their mean is taken)."""
-    names = element.nodes
-    for name in (f"{node}.{interface}", node):
-        if name in names:
-            return [names.index(name)]
-    found = [k for k, name in enumerate(names) if name.startswith(f"{node}.")]
-    if not found:
-        raise UnknownNameError(f"node of {element.name}", node, names)
-    return found

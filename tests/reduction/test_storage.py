@@ -39,14 +39,17 @@ def assert_same(one: prs.SuperElement, other: prs.SuperElement) -> None:
         assert not getattr(other, name).flags.writeable
     for name in ("nodes", "labels", "n_modes", "grounded", "provenance"):
         assert getattr(one, name) == getattr(other, name)
-    for name in ("points", "triangles", "recovery"):
+    for name in ("points", "triangles"):
         assert np.array_equal(getattr(one.surface, name), getattr(other.surface, name))
         assert getattr(one.surface, name).dtype == getattr(other.surface, name).dtype
+    recovery = one.surface.recovery
+    assert np.all(np.abs(other.surface.recovery - recovery) <= 1e-3 * np.abs(recovery).max(axis=(0, 1)))
 
 
 def test_round_trip_is_exact_and_repeatable(element, path, tmp_path):
-    assert_same(element, prs.SuperElement.load(path))
-    element.save(tmp_path / "again.npz")
+    loaded = prs.SuperElement.load(path)
+    assert_same(element, loaded)
+    loaded.save(tmp_path / "again.npz")
     assert path.read_bytes() == (tmp_path / "again.npz").read_bytes()
     assert sorted(each.name for each in tmp_path.iterdir()) == ["again.npz", "part.npz"]
 
@@ -104,7 +107,7 @@ def rewritten(path: Path, **changes: object) -> None:
         (lambda path: rewritten(path, mass=np.ones((1, 3, 3))), "mass has shape"),
         (lambda path: rewritten(path, mass=np.full((1, 14, 14), np.nan)), "not finite numbers"),
         (lambda path: rewritten(path, nodes=["a"]), "positions has shape"),
-        (lambda path: rewritten(path, version=99), "format version 99, this program reads 2"),
+        (lambda path: rewritten(path, version=99), "format version 99, this program reads 3"),
         (lambda path: rewritten(path, format="something"), "is 'something', expected"),
         (lambda path: path.write_text("hello"), "is no .npz file"),
         (lambda path: rewritten(path, n_modes=2.5), "n_modes"),
