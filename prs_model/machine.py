@@ -63,13 +63,15 @@ class Machine:
     @cached_property
     def parts(self) -> Mapping[str, SuperElement | TravellingElement]:
         """The super-element of every body, constant in its body frame."""
+        from .joint_loaded import joint_loaded_parts
         from .reduction import build_part
 
         file, folder, stems = self.description.file, self.description.folder, self.description.stems
-        return {
+        parts = {
             name: build_part(name, body, file.reduction, folder, stem=stems[name])
             for name, body in self.description.bodies.items()
         }
+        return joint_loaded_parts(self.description, parts, self.joints, self.configuration)
 
     @cached_property
     def joints(self) -> tuple[ElasticJoint, ...]:
