@@ -25,9 +25,11 @@ if TYPE_CHECKING:
     from .kinematics.tasks import Task
     from .machine import Machine, load_machine
     from .modes import Modes
+    from .modes.mac import mac
     from .plugins import PartRequest, Reducer, list_machines, list_reducers
     from .reduction import SuperElement, TravellingElement, export, read_part, reduce
     from .synthesis import System
+    from .verification import VerificationReport, verify
 
     __version__: str
 
@@ -45,12 +47,15 @@ _LAZY = {
     "System": "synthesis",
     "Task": "kinematics.tasks",
     "TravellingElement": "reduction",
+    "VerificationReport": "verification",
     "export": "reduction",
     "list_machines": "plugins",
     "list_reducers": "plugins",
     "load_machine": "machine",
+    "mac": "modes.mac",
     "read_part": "reduction",
     "reduce": "reduction",
+    "verify": "verification",
 }
 
 __all__ = [
@@ -75,13 +80,16 @@ __all__ = [
     "TravellingElement",
     "UnknownNameError",
     "UnreachablePoseError",
+    "VerificationReport",
     "__version__",
     "export",
     "list_machines",
     "list_reducers",
     "load_machine",
+    "mac",
     "read_part",
     "reduce",
+    "verify",
 ]
 
 

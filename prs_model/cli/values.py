@@ -38,16 +38,18 @@ def assignment(text: str) -> tuple[str, str]:
     return match["name"], match["value"]
 
 
-def pose_from(assignments: Sequence[tuple[str, str]], coordinates: Mapping[str, Dimension]) -> dict[str, float]:
-    """Pose coordinates in SI from ``nutation=10deg z=1275mm``; bare numbers are SI.
+def pose_from(
+    assignments: Sequence[tuple[str, str]], coordinates: Mapping[str, Dimension], option: str = "--pose"
+) -> dict[str, float]:
+    """Pose coordinates in SI from ``nutation=10deg z=1275mm``; bare numbers are SI. option: named in messages.
 
     Raises PrsError for a coordinate given twice, a value that is not a number, or a unit of the wrong kind.
     """
     pose: dict[str, float] = {}
     for name, text in assignments:
         if name in pose:
-            raise PrsError(f"--pose {name}: given twice")
-        pose[name] = _number(name, text, coordinates.get(name))
+            raise PrsError(f"{option} {name}: given twice")
+        pose[name] = _number(f"{option} {name}", text, coordinates.get(name))
     return pose
 
 
@@ -123,18 +125,16 @@ def positive(text: str) -> int:
     return value
 
 
-def _number(name: str, text: str, dimension: Dimension | None) -> float:
+def _number(place: str, text: str, dimension: Dimension | None) -> float:
     match = _NUMBER.fullmatch(text.strip())
     if not match or not isfinite(float(match["number"])):
-        raise PrsError(
-            f"--pose {name}: found '{text}', expected a number with or without a unit, such as 10deg or 1275mm"
-        )
+        raise PrsError(f"{place}: found '{text}', expected a number with or without a unit, such as 10deg or 1275mm")
     number, unit = float(match["number"]), match["unit"]
     if not unit or dimension is None:
         return number
     kind, known = _UNITS[dimension]
     if unit not in known:
-        raise PrsError(f"--pose {name}: found unit '{unit}', expected one of {', '.join(known)}")
+        raise PrsError(f"{place}: found unit '{unit}', expected one of {', '.join(known)}")
     return number * dimension.factor(Units.model_validate({kind: unit}))
 
 

@@ -1,0 +1,119 @@
+"""What a verification found: plain data, pose axis first."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+from ..description.units import Dimension
+from ..modes import Modes
+
+Characters = tuple[tuple[str, ...], ...]
+
+
+@dataclass(frozen=True, eq=False)
+class ModelRun:
+    """One model at all poses, complete or reduced.
+
+    own: of a reduction, the complete model with the same interface kinematics. size: number of coordinates.
+    frequencies (poses, c) [Hz], ascending; c is more than the count that was asked for, so that pairs are not cut.
+    characters: of the modes of every pose. seconds (poses,): taken for each; preparation [s]: before the first pose.
+    residuals (poses, c): error bounds of the squared frequencies, of a complete model. peak_memory [bytes]: of the
+    process until then, None where the system does not say. reference_modes: at the first pose, for pictures.
+    """
+
+    name: str
+    title: str
+    own: str
+    size: int
+    frequencies: FloatArray
+    characters: Characters
+    seconds: FloatArray
+    preparation: float
+    reference_modes: Modes
+    residuals: FloatArray | None = None
+    peak_memory: float | None = None
+    family: str = ""
+    modes_per_part: int | None = None
+
+    @property
+    def first_seconds(self) -> float:
+        """Time [s] until the first pose is solved, preparation included."""
+        return float(self.preparation + self.seconds[0])
+
+    @property
+    def further_seconds(self) -> float | None:
+        """Median time [s] of the further poses; None when there is one pose only."""
+        return float(np.median(self.seconds[1:])) if len(self.seconds) > 1 else None
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """One reduction against one complete model at all poses, the modes paired by their shapes.
+
+    partners (poses, count): the reduction's mode that answers each mode of the complete model. clusters (poses, count):
+    equal for modes too close to be told apart. discrepancies (poses, count): of a pair's frequencies, relative to the
+    complete model. margins (poses, count): the same in the order of frequencies, never negative for the same interface
+    kinematics (min-max principle). mac (poses, count, count): eq. (23) of the pairs, close modes turned to match.
+    """
+
+    reduction: str
+    model: str
+    partners: IntArray
+    clusters: IntArray
+    discrepancies: FloatArray
+    margins: FloatArray
+    mac: FloatArray
+
+    @property
+    def rms(self) -> FloatArray:
+        """(poses,): root mean square of the discrepancies over the modes (Table 4)."""
+        return np.asarray(np.sqrt(np.mean(self.discrepancies**2, axis=1)))
+
+    @property
+    def largest(self) -> FloatArray:
+        """(poses,): the largest discrepancy, in absolute value."""
+        return np.asarray(np.abs(self.discrepancies).max(axis=1))
+
+    @property
+    def mac_diagonal(self) -> FloatArray:
+        """(poses, count): MAC of each pair."""
+        return np.asarray(np.diagonal(self.mac, axis1=1, axis2=2))
+
+
+@dataclass(frozen=True, eq=False)
+class VerificationReport:
+    """Reductions held against complete-order models of one machine.
+
+    poses: coordinate to value [m, rad], the first one shown in full; coordinates: what each is. count: modes compared.
+    joint_stiffness: the factor on the stiffness of all joints. `curve` names the reductions that only serve the curve
+    of error against coordinates.
+    """
+
+    machine: str
+    title: str
+    poses: tuple[Mapping[str, float], ...]
+    coordinates: Mapping[str, Dimension]
+    count: int
+    models: tuple[ModelRun, ...]
+    reductions: tuple[ModelRun, ...]
+    comparisons: tuple[Comparison, ...]
+    joint_stiffness: float = 1.0
+    curve: tuple[str, ...] = ()
+
+    @property
+    def shown(self) -> tuple[ModelRun, ...]:
+        """The reductions that tables show."""
+        return tuple(run for run in self.reductions if run.name not in self.curve)
+
+    def comparison(self, reduction: str, model: str) -> Comparison:
+        """One reduction against one model, both by name."""
+        return next(each for each in self.comparisons if (each.reduction, each.model) == (reduction, model))
+
+    def least_margin(self, reduction: ModelRun) -> float | None:
+        """The least of f_reduced / f_complete - 1 against the model of the same interface kinematics, if that ran."""
+        own = [each for each in self.comparisons if (each.reduction, each.model) == (reduction.name, reduction.own)]
+        return float(own[0].margins.min()) if own else None
