@@ -116,7 +116,7 @@ class Body(Section):
 class ReductionDefaults(Section):
     """What bodies use that do not say otherwise. Coupling and tie follow from the method when they are left out."""
 
-    method: Method = "craig-bampton"
+    method: Method = "joint-loaded"
     coupling: Coupling | None = None
     tie: Tie | None = None
     modes: Annotated[int, Field(ge=0)] = 3

@@ -87,6 +87,7 @@ def reduce(
         expected=expected,
         modes=modes,
         coupling=coupling,
+        method="craig-bampton",
     )
     element = build_part(body.frame, body, ReductionDefaults(), Path())
     if isinstance(element, TravellingElement):

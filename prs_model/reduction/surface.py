@@ -34,7 +34,7 @@ class Surface:
 
     def through(self, projection: FloatArray) -> Surface:
         """The surface under coordinates u' with u = P u', P (n, n')."""
-        return Surface(self.points, self.triangles, np.asarray(self.recovery @ projection, dtype=np.float32))
+        return Surface(self.points, self.triangles, lambda: np.asarray(self.recovery @ projection, dtype=np.float32))
 
 
 @dataclass(frozen=True, eq=False)
