@@ -28,7 +28,8 @@ class FiniteElementModel:
     ux..rz) of every row. node_ids: (n_nodes,) labels (numbers or names) of the part file, where they are known.
     node_sets: node indices by name; set_weights: areas [m^2] of a set's nodes; areas: (n_nodes,) of all nodes, on the
     whole outer surface.
-    triangles: (t, 3) node indices of the outer surface.
+    triangles: (t, 3) node indices of the outer surface. mid_sides: (t, 3) of the nodes between its first two corners,
+    its last two, and its last and first; (t, 0) of linear elements; None where they are unknown.
     """
 
     stiffness: csr_array
@@ -40,6 +41,7 @@ class FiniteElementModel:
     set_weights: Mapping[str, FloatArray] = field(default_factory=dict)
     areas: FloatArray | None = None
     triangles: IntArray | None = None
+    mid_sides: IntArray | None = None
     provenance: Mapping[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -53,6 +55,9 @@ class FiniteElementModel:
         for name in ("node_ids", "areas"):
             if (given := getattr(self, name)) is not None:
                 shapes[name] = (given.shape, (nodes,))
+        if self.mid_sides is not None:
+            t = 0 if self.triangles is None else len(self.triangles)
+            shapes["mid_sides"] = (self.mid_sides.shape, (t, 3 if self.mid_sides.size else 0))
         for name, (found, expected) in shapes.items():
             if found != expected:
                 raise PrsError(f"{self.name}: {name} has shape {found}, expected {expected}")
@@ -73,6 +78,13 @@ class FiniteElementModel:
     def source(self) -> str:
         """The file the part was read from, or its name."""
         return self.provenance.get("source", self.name)
+
+    @property
+    def facets(self) -> IntArray | None:
+        """(t, 3 or 6): corners and mid-side nodes of the outer surface; None where they are unknown."""
+        if self.triangles is None or self.mid_sides is None:
+            return None
+        return np.hstack([self.triangles, self.mid_sides])
 
     @cached_property
     def rows(self) -> IntArray:

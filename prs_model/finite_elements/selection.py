@@ -12,13 +12,16 @@ from ..arrays import BoolArray, FloatArray, IntArray
 from ..description.interface import Box, Cylinder, NodeId, Plane, Selection
 from ..description.problems import did_you_mean
 from ..errors import PartFileError
+from .facets import area_weights
 
 Mask = BoolArray
 
 MOST_LISTED = 30  # labels in a message
 LENGTHS = "lengths are in m in Python and on the command line, and in its own units in machine.yaml"
+ENDS = ((0, 1.0), (1, -1.0))  # of bounds [low, high], and where their inside is
 PLACES = ("box", "cylinder", "plane")
-SLACK = 1e-6  # of the part's size: nodes this close to the face of a box count as inside
+SLACK = 1e-6  # of the part's size: nodes this close to the face of a box count as on it
+NO_AREA = 1e-12  # of the largest facet: a weight that is round-off
 
 
 class LabelledNodes(Protocol):
@@ -40,6 +43,13 @@ class LabelledNodes(Protocol):
     def areas(self) -> FloatArray | None: ...
 
 
+class SurfaceNodes(LabelledNodes, Protocol):
+    """Nodes of which those on the outer surface are known as facets, as of a finite-element model."""
+
+    @property
+    def facets(self) -> IntArray | None: ...
+
+
 def select(
     model: LabelledNodes, selection: Selection, *, shift: ArrayLike = (0.0, 0.0, 0.0), entry: str = "selection"
 ) -> tuple[IntArray, FloatArray]:
@@ -58,6 +68,30 @@ def select(
     if not len(chosen):
         raise PartFileError(model.source, _nothing(model, masks, alive, entry))
     return chosen, _weights(model, selection, chosen)
+
+
+def select_area(
+    model: SurfaceNodes, selection: Selection, *, shift: ArrayLike = (0.0, 0.0, 0.0), entry: str = "selection"
+) -> tuple[IntArray, FloatArray]:
+    """Node indices (m,) and weights (m,) [m^2] of the area that a selection means, a smooth function of its `shift`.
+
+    Facets of the outer surface whose nodes are all in what else the selection names are cut along the sides of its box
+    and the ends of its cylinder, and w_i = int N_i dA over what is inside. The nodes are those with weight: they may
+    stand outside the box, and a corner's weight may be negative (see `facets`). Without sides, facets or area it is
+    `select`. Raises as that does.
+    """
+    moved = np.asarray(shift, dtype=float)
+    normals, offsets = _sides(selection, moved)
+    if not len(normals) or model.facets is None:
+        return select(model, selection, shift=moved, entry=entry)
+    named = [mask for _, mask in _masks(model, _without_sides(selection), moved, entry)]
+    facets = model.facets[np.all([mask[model.facets].all(axis=1) for mask in named], axis=0)] if named else model.facets
+    distances = model.coordinates @ normals.T - offsets
+    distances[np.abs(distances) <= _slack(model)] = 0.0
+    weights = area_weights(model.coordinates, facets, distances)
+    weights[np.all(model.rows < 0, axis=1)] = 0.0
+    chosen = np.flatnonzero(np.abs(weights) > NO_AREA * np.max(weights, initial=0.0))
+    return (chosen, weights[chosen]) if len(chosen) else select(model, selection, shift=moved, entry=entry)
 
 
 def listed_nodes(labels: Iterable[object]) -> str:
@@ -93,7 +127,7 @@ def _masks(model: LabelledNodes, selection: Selection, shift: FloatArray, entry:
         yield f"set '{selection.set}'", _mask_of(model, model.node_sets[selection.set])
     if selection.nodes is not None:
         yield "nodes", _mask_of(model, _labelled(model, selection.nodes, f"{entry}.nodes"))
-    slack = SLACK * float(np.ptp(model.coordinates, axis=0).max())
+    slack = _slack(model)
     points = model.coordinates - shift
     if selection.box is not None:
         yield f"box ({_limits(selection.box)})", _in_box(points, selection.box, slack)
@@ -101,6 +135,29 @@ def _masks(model: LabelledNodes, selection: Selection, shift: FloatArray, entry:
         yield "cylinder", _on_cylinder(points, selection.cylinder, slack)
     if selection.plane is not None:
         yield "plane", _on_plane(points, selection.plane)
+
+
+def _slack(model: LabelledNodes) -> float:
+    return SLACK * float(np.ptp(model.coordinates, axis=0).max())
+
+
+def _sides(selection: Selection, shift: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Planes that bound a selection, inside of which n . x >= c: normals n (h, 3) and offsets c (h,) [m]."""
+    slabs = []
+    if selection.box is not None:
+        limits = (selection.box.x, selection.box.y, selection.box.z)
+        slabs += [(axis, shift @ axis, each) for axis, each in zip(np.eye(3), limits, strict=True)]
+    if selection.cylinder is not None:
+        axis = np.array(selection.cylinder.axis, dtype=float) / np.linalg.norm(selection.cylinder.axis)
+        start = np.array(selection.cylinder.point, dtype=float) + shift
+        slabs.append((axis, start @ axis, selection.cylinder.length))
+    sides = [(sign * axis, sign * (at + each[end])) for axis, at, each in slabs if each for end, sign in ENDS]
+    return np.array([normal for normal, _ in sides]).reshape(-1, 3), np.array([offset for _, offset in sides])
+
+
+def _without_sides(selection: Selection) -> Selection:
+    endless = None if selection.cylinder is None else selection.cylinder.model_copy(update={"length": None})
+    return selection.model_copy(update={"box": None, "cylinder": endless})
 
 
 def _mask_of(model: LabelledNodes, nodes: IntArray) -> Mask:

@@ -101,19 +101,20 @@ def check_ties(model: FiniteElementModel, ties: Sequence[Tie]) -> None:
 def _follows(averaged: Tie, other: Tie) -> bool:
     """Whether the motion of an averaged node is fixed by another's: nodes inside a rigid tie, or the same average."""
     if other.coupling == "rigid":
-        return bool(np.all(np.isin(averaged.indices[averaged.weights > 0.0], other.indices)))
+        return bool(np.all(np.isin(averaged.indices[averaged.weights != 0.0], other.indices)))
     (a, b), (one, two) = (averaged.indices, other.indices), (averaged.weights, other.weights)
     return np.array_equal(a, b) and np.allclose(one / one.sum(), two / two.sum())
 
 
 def _holds_six_motions(model: FiniteElementModel, tie: Tie) -> bool:
-    rows = model.rows_of(tie.indices)
-    if tie.coupling == "averaged":
-        weighted = tie.indices[tie.weights > 0.0]
-        rows = model.rows[weighted, :3].ravel()
-        rows = rows[rows >= 0]
+    """Whether the mean of X^T W X, in the tie's own length, is positive definite; W = 1 of a rigid one."""
+    averaged = tie.coupling == "averaged"
+    rows = model.rows[tie.indices, : 3 if averaged else 6]
+    weights = np.broadcast_to((tie.weights if averaged else np.ones(len(rows)))[:, None], rows.shape)[rows >= 0]
+    rows = rows[rows >= 0]
     centre = model.coordinates[tie.indices].mean(axis=0)
-    motions = model.rigid_body_modes(rows, about=centre)
     size = float(np.linalg.norm(model.coordinates[tie.indices] - centre, axis=1).max())
     scale = np.array([1.0, 1.0, 1.0, *(3 * [1.0 / size if size > 0.0 else 1.0])])
-    return len(rows) >= 6 and float(np.linalg.svd(motions * scale, compute_uv=False)[-1]) > 1e-6 * np.sqrt(len(rows))
+    motions = model.rigid_body_modes(rows, about=centre) * scale
+    mean = motions.T @ (motions * weights[:, None]) / weights.sum()
+    return len(rows) >= 6 and float(np.linalg.eigvalsh(mean)[0]) > 1e-12

@@ -11,7 +11,7 @@ from ..description.interface import Coupling, Interface, Member, Point, Selectio
 from ..description.problems import did_you_mean, listed
 from ..errors import PartFileError
 from ..finite_elements import FiniteElementModel
-from ..finite_elements.selection import listed_nodes, select
+from ..finite_elements.selection import listed_nodes, select, select_area
 from .coupling import Tie
 from .recipe import Settings
 
@@ -46,7 +46,8 @@ def interface_ties(
     """One tie per condensation node, in the order of the interfaces; travelling ones moved by `shift` (3,) [m].
 
     An interface becomes the node ``<interface>``, or, tied at the interface, one node ``<interface>.<member>`` for each
-    of its members. A node stands at `at`, by default in the weighted centre of what it holds.
+    of its members. Rigid ones hold the nodes inside a box, averaged ones the area inside it. A node stands at `at`, by
+    default in the weighted centre of what it holds.
     """
     ties: list[Tie] = []
     labels = [] if model.node_ids is None else [str(label) for label in model.node_ids]
@@ -63,7 +64,8 @@ def _ties(
     if interface.node is not None:
         interface = interface.model_copy(update={"node": None, "nodes": (interface.node,)})
     parts: tuple[Selection, ...] = interface.members or (interface,)
-    chosen = [select(model, part.alone(), shift=shift, entry=_entry(entry, part)) for part in parts]
+    choose = select_area if coupling == "averaged" else select
+    chosen = [choose(model, part.alone(), shift=shift, entry=_entry(entry, part)) for part in parts]
     if settings.tie_of(interface) == "interface" and interface.members:
         for member, each in zip(interface.members, chosen, strict=True):
             indices, weights = _union([each])

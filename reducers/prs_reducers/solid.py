@@ -118,6 +118,7 @@ def solid_model(mesh: TetrahedralMesh, options: SolidOptions, scale: float = 1.0
         },
         areas=face_areas(points, skin),
         triangles=skin[:, :3],
+        mid_sides=skin[:, 3:],
         provenance={"elements": f"{len(mesh.elements)} tetrahedra of {mesh.elements.shape[1]} nodes"},
     )
 

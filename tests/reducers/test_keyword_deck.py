@@ -42,7 +42,7 @@ def nodes(points: object, first: int = 1) -> str:
 
 def volume(mesh: LabelledMesh) -> float:
     """By the divergence theorem, so positive only when all triangles are seen from outside."""
-    triangles, _ = outer_surface(mesh.solids, mesh.table.coordinates)
+    triangles = outer_surface(mesh.solids, mesh.table.coordinates).triangles
     a, b, c = np.moveaxis(mesh.table.coordinates[triangles], 1, 0)
     return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0)
 
@@ -56,7 +56,13 @@ def test_the_outer_surface_encloses_the_solid(tmp_path, corners, kind, size, are
     element = ", ".join(["7", *labels[:15]]) + (",\n" + ", ".join(labels[15:]) if labels[15:] else "")
     mesh = read_deck_mesh(deck(tmp_path, f"{nodes(points)}*ELEMENT, TYPE={kind}\n{element}\n"))
     assert volume(mesh) == pytest.approx(size, rel=1e-12)
-    assert outer_surface(mesh.solids, mesh.table.coordinates)[1].sum() == pytest.approx(area, rel=1e-12)
+    surface = outer_surface(mesh.solids, mesh.table.coordinates)
+    assert surface.areas.sum() == pytest.approx(area, rel=1e-12)
+    assert (surface.mid_sides is None) == (kind in ("C3D15", "C3D20R"))
+    if kind == "C3D10M":
+        corners = mesh.table.coordinates[surface.triangles]
+        halfway = (corners + np.roll(corners, -1, axis=1)) / 2.0
+        np.testing.assert_allclose(mesh.table.coordinates[surface.mid_sides], halfway, rtol=1e-12)
 
 
 def test_faces_between_elements_are_inside(tmp_path):
@@ -64,7 +70,7 @@ def test_faces_between_elements_are_inside(tmp_path):
     elements = "*ELEMENT, TYPE=C3D8\n1, 1,2,3,4,5,6,7,8\n2, 2,9,10,3,6,11,12,7\n"
     mesh = read_deck_mesh(deck(tmp_path, nodes(points) + elements))
     assert volume(mesh) == pytest.approx(2.0)
-    assert outer_surface(mesh.solids, mesh.table.coordinates)[1].sum() == pytest.approx(10.0)
+    assert outer_surface(mesh.solids, mesh.table.coordinates).areas.sum() == pytest.approx(10.0)
 
 
 SETS = """*Part, name=Block

@@ -24,9 +24,9 @@ def meshed_model(
     Raises PartFileError when nodes lack coordinates, or rows of solids are none of such a mesh.
     """
     table, square = mesh.table, Dimension(length=2).factor(units)
-    triangles, areas = outer_surface(mesh.solids, table.coordinates)
+    surface = outer_surface(mesh.solids, table.coordinates)
     weights = {
-        name: sum((area_shares(*face, table.coordinates) for face in faces), np.zeros(len(areas)))
+        name: sum((area_shares(*face, table.coordinates) for face in faces), np.zeros(len(surface.areas)))
         for name, faces in mesh.surfaces.items()
         if name not in mesh.node_sets
     }
@@ -36,12 +36,13 @@ def meshed_model(
         table,
         units,
         node_sets={**mesh.node_sets, **surfaces},
-        triangles=triangles if len(triangles) else None,
+        triangles=surface.triangles if len(surface.triangles) else None,
         provenance={"source": str(matrices.source), **provenance},
     )
     check_against_mesh(model, mesh, matrices)
     return replace(
         model,
-        areas=areas * square if len(triangles) else None,
+        mid_sides=surface.mid_sides,
+        areas=surface.areas * square if len(surface.triangles) else None,
         set_weights={name: weights[name][nodes] * square for name, nodes in surfaces.items()},
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -34,23 +35,37 @@ def face_nodes(nodes: IntArray, face: int) -> tuple[IntArray, IntArray]:
     return nodes[:, around], nodes[:, middles]
 
 
-def outer_surface(solids: Mapping[int, IntArray], points: FloatArray) -> tuple[IntArray, FloatArray]:
-    """Triangles (t, 3) of the faces that only one element has, outward, and each point's share (n,) in their area.
+@dataclass(frozen=True, eq=False)
+class OuterSurface:
+    """triangles (t, 3), outward; mid_sides as FiniteElementModel has them; each point's share (n,) in the area."""
 
-    solids: elements (e, 4 to 20) by their number of nodes.
+    triangles: IntArray
+    mid_sides: IntArray | None
+    areas: FloatArray
+
+
+def outer_surface(solids: Mapping[int, IntArray], points: FloatArray) -> OuterSurface:
+    """The faces that only one element has; those of four corners as two triangles.
+
+    solids: elements (e, 4 to 20) by their number of nodes. Mid-side nodes are known when all triangles have them, or
+    none: not of halves of eight-node faces.
     """
     faces = [face_nodes(nodes, f) for nodes in solids.values() for f in range(len(FACES[CORNERS[nodes.shape[1]]]))]
     keys = np.concatenate([_padded(np.sort(corners, axis=1)) for corners, _ in faces] or [np.zeros((0, 4), dtype=int)])
     _, place, count = np.unique(keys, axis=0, return_inverse=True, return_counts=True)
     alone, start = count[place.ravel()] == 1, 0
     triangles: list[IntArray] = [np.zeros((0, 3), dtype=np.int64)]
+    between: list[IntArray] = []
     areas = np.zeros(len(points))
     for corners, middles in faces:
         outer = alone[start : start + len(corners)]
         start += len(corners)
         triangles.append(split(corners[outer]))
+        between.append(np.tile(middles[outer], (corners.shape[1] - 2, 1)))
         areas += area_shares(corners[outer], middles[outer], points)
-    return np.concatenate(triangles), areas
+    widths = {each.shape[1] for each in between if len(each)}
+    known = np.concatenate([each for each in between if len(each)]) if widths in ({0}, {3}) else None
+    return OuterSurface(np.concatenate(triangles), known, areas)
 
 
 def split(corners: IntArray) -> IntArray:
