@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
@@ -16,9 +17,11 @@ from .subspace import Subspace, enlarged
 
 Synthesis = Callable[[Mapping[str, SuperElement]], System]
 
-MORE = 2  # modes brought to rest beyond those asked for
+MORE = 2  # modes improved beyond those asked for, which may change places with them
 MOST_ITERATIONS = 20
 ACCURACY = 1e-5  # of a mode, so that its frequency is good to about the square
+
+logger = logging.getLogger("prs_model")
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +48,8 @@ def lowest(joined: Joined, spaces: Mapping[str, Subspace], synthesis: Synthesis,
         inverse = joined.solve(_momenta(joined, shapes))
         errors = {name: inverse[name] * (modes.eigenvalues - shift) - shapes[name] for name in spaces}
         residuals = np.sqrt(_energy(errors, _momenta(joined, errors)))
-        if np.all(residuals <= ACCURACY):
+        logger.debug("complete order: residuals %s", " ".join(f"{each:.1e}" for each in residuals))
+        if np.all(residuals[:count] <= ACCURACY):
             return Solution({name: each[:, :count] for name, each in shapes.items()}, residuals[:count], iteration)
         moving = residuals > ACCURACY
         spaces = {name: enlarged(space, errors[name][:, moving]) for name, space in spaces.items()}
