@@ -14,6 +14,7 @@ from ..joints import ElasticJoint
 from ..kinematics import Configuration
 from ..reduction import SuperElement, TravellingElement
 from ..reduction.from_model import AWAITS_JOINTS
+from ..reduction.gate import JOINT_LOADED
 from .basis import Held, energy_matrix, independent, joint_loaded_basis, reach_of, static_shapes
 from .grips import grips
 
@@ -60,12 +61,16 @@ def _loaded(
 
 
 def _travelling(part: TravellingElement, stations: Sequence[Held]) -> TravellingElement:
-    """In static shapes only, the same combinations of them at every station: those are smooth along the way."""
+    """In static shapes and in the modes that it came with: the same combinations of them at every station.
+
+    Both are smooth along the way; modes under the joints would change places.
+    """
     middle = len(stations) // 2
     reach = reach_of(part.elements[middle])
     statics = [static_shapes(station, reach) for station in stations]
     kept = independent(energy_matrix(stations[middle], statics[middle]), statics[middle])
-    bases = [static @ kept for static in statics]
+    modes = np.eye(part.size)[:, part.size - part.n_modes :]
+    bases = [np.hstack([static @ kept, modes]) for static in statics]
     elements = tuple(_in_shapes(element, basis) for element, basis in zip(part.elements, bases, strict=True))
     if (products := part.products) is not None:
         products = np.einsum("iab,ijac,jcd->ijbd", bases, products, bases, optimize=True)
@@ -85,5 +90,5 @@ def _in_shapes(element: SuperElement, basis: FloatArray) -> SuperElement:
         n_modes=0,
         surface=None if element.surface is None else element.surface.through(basis),
         labels=tuple(f"shape {i + 1}" for i in range(basis.shape[1])),
-        provenance={**element.provenance, "basis": "joint-loaded", "modes": "joint-loaded"},
+        provenance={**element.provenance, "basis": JOINT_LOADED, "modes": JOINT_LOADED},
     )

@@ -16,6 +16,8 @@ from .super_element import SuperElement, present_motions
 SYMMETRY, DEFINITE, RIGID, HELD, BODY, MODAL = 1e-9, 1e-9, 1e-8, 1e-8, 1e-6, 1e-8
 SOFT = 1e6  # s^-2: beside a stiffness that makes the mass oscillate this slowly, round-off does not count
 
+JOINT_LOADED = "joint-loaded"  # a basis of the shapes that joints give a part: rigid motions only of a free one
+
 
 @dataclass(frozen=True)
 class Check:
@@ -69,10 +71,12 @@ def _checks(element: SuperElement) -> Iterator[Check]:
     yield _definite("mass is not negative", element.mass, np.zeros(element.size), cause)
     soft, cause = SOFT * np.diag(element.mass), "a flipped sign or digit, or a stress-stiffened part"
     yield _definite("stiffness is not negative", element.stiffness, soft, cause)
-    yield _rigid_motion(element)
     if element.grounded:
-        yield _held(element)
+        if element.provenance.get("basis") != JOINT_LOADED:
+            yield _rigid_motion(element)
+            yield _held(element)
     else:
+        yield _rigid_motion(element)
         yield _free(element)
         yield _equal_masses(element)
         yield _mass_of_a_body(element)

@@ -30,9 +30,15 @@ def recipe(body: Body, options: Section, settings: Settings, reducer_version: in
         "clamped": sorted(body.clamped),
         "grounded": body.grounded,
         "method": settings.method,
-        **({"modes": settings.modes} if settings.method == "craig-bampton" else {}),
+        **({"modes": settings.modes} if _are_modes_stored(body, settings) else {}),
     }
     return json.dumps(content, sort_keys=True, separators=(",", ":"))
+
+
+def _are_modes_stored(body: Body, settings: Settings) -> bool:
+    """The modes of joint-loaded parts are found when the machine is loaded, but for those whose contact travels."""
+    travels = any(interface.travel is not None for interface in body.interfaces.values())
+    return settings.method == "craig-bampton" or travels
 
 
 def fingerprint(text: str) -> str:

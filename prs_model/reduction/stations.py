@@ -60,9 +60,8 @@ def reduce_travelling(
         raise PartFileError(
             model.source, f"interfaces.{name}: the part has no other interface and no ground to be held by; add one"
         )
-    joint_loaded = settings.method == "joint-loaded"
-    n_modes, basis = (0, AWAITS_JOINTS) if joint_loaded else (settings.modes, "craig-bampton")
-    elements, products = reduction_per_station(model, ties, np.array(moving), n_modes, grounded, basis)
+    basis = AWAITS_JOINTS if settings.method == "joint-loaded" else "craig-bampton"
+    elements, products = reduction_per_station(model, ties, np.array(moving), settings.modes, grounded, basis)
     return TravellingElement(travel.joint, stations, elements, products)
 
 

@@ -112,12 +112,13 @@ class TravellingElement:
     def check(self) -> tuple[GateReport, ...]:
         """Pass the physics gate at every station and midway between them, with one mass. Raises PhysicsError."""
         middles = (self.stations[:-1] + self.stations[1:]) / 2.0
-        between = [
-            replace(self.at(value), provenance={"name": f"{self.name} at {self.joint} = {value:g}"})
-            for value in middles
-        ]
+        between = [self._named(self.at(value), f"{self.name} at {self.joint} = {value:g}") for value in middles]
         whole = passed(self.name, self._checks_of_mass(between))
         return (whole, *(each.check() for each in (*self.elements, *between)))
+
+    @staticmethod
+    def _named(element: SuperElement, name: str) -> SuperElement:
+        return replace(element, provenance={**element.provenance, "name": name})
 
     def _checks_of_mass(self, between: Sequence[SuperElement]) -> Iterator[Check]:
         """What a damaged mass cannot hide: it is that of every station there, and the same rigid body in between."""
