@@ -21,7 +21,7 @@ LENGTHS = "lengths are in m in Python and on the command line, and in its own un
 ENDS = ((0, 1.0), (1, -1.0))  # of bounds [low, high], and where their inside is
 PLACES = ("box", "cylinder", "plane")
 SLACK = 1e-6  # of the part's size: nodes this close to the face of a box count as on it
-NO_AREA = 1e-12  # of the largest facet: a weight that is round-off
+NO_AREA = 1e-14  # of the part's size squared: a weight that is round-off
 
 
 class LabelledNodes(Protocol):
@@ -87,10 +87,10 @@ def select_area(
     named = [mask for _, mask in _masks(model, _without_sides(selection), moved, entry)]
     facets = model.facets[np.all([mask[model.facets].all(axis=1) for mask in named], axis=0)] if named else model.facets
     distances = model.coordinates @ normals.T - offsets
-    distances[np.abs(distances) <= _slack(model)] = 0.0
+    distances[np.abs(distances) <= SLACK * _size(model)] = 0.0
     weights = area_weights(model.coordinates, facets, distances)
     weights[np.all(model.rows < 0, axis=1)] = 0.0
-    chosen = np.flatnonzero(np.abs(weights) > NO_AREA * np.max(weights, initial=0.0))
+    chosen = np.flatnonzero(np.abs(weights) > NO_AREA * _size(model) ** 2)
     return (chosen, weights[chosen]) if len(chosen) else select(model, selection, shift=moved, entry=entry)
 
 
@@ -127,7 +127,7 @@ def _masks(model: LabelledNodes, selection: Selection, shift: FloatArray, entry:
         yield f"set '{selection.set}'", _mask_of(model, model.node_sets[selection.set])
     if selection.nodes is not None:
         yield "nodes", _mask_of(model, _labelled(model, selection.nodes, f"{entry}.nodes"))
-    slack = _slack(model)
+    slack = SLACK * _size(model)
     points = model.coordinates - shift
     if selection.box is not None:
         yield f"box ({_limits(selection.box)})", _in_box(points, selection.box, slack)
@@ -137,8 +137,8 @@ def _masks(model: LabelledNodes, selection: Selection, shift: FloatArray, entry:
         yield "plane", _on_plane(points, selection.plane)
 
 
-def _slack(model: LabelledNodes) -> float:
-    return SLACK * float(np.ptp(model.coordinates, axis=0).max())
+def _size(model: LabelledNodes) -> float:
+    return float(np.ptp(model.coordinates, axis=0).max())
 
 
 def _sides(selection: Selection, shift: FloatArray) -> tuple[FloatArray, FloatArray]:

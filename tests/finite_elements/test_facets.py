@@ -131,10 +131,13 @@ def test_without_facets_or_area_nodes_are_picked():
         (replace(model, triangles=None, mid_sides=None), across),
         (model, {"set": "z1"}),
         (model, {"set": "z1", "box": {"x": (0.1, 0.1)}}),
+        (model, {"set": "z1", "box": {"x": (0.1 + 1e-12, 0.1 + 1e-12)}}),
     ):
         selection = Selection.model_validate(named)
         for one, other in zip(select_area(part, selection), select(part, selection), strict=True):
             assert np.array_equal(one, other)
+    with pytest.raises(PrsError, match="no node is in all of"):
+        patch(model, 0.0, {"set": "z1", "box": {"x": (0.123, 0.123)}})
     with pytest.raises(PrsError, match=r"mid_sides has shape \(4, 3\), expected \(56, 3\)"):
         replace(model, mid_sides=np.zeros((4, 3), dtype=int))
 
