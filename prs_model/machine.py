@@ -126,14 +126,15 @@ class Machine:
         """The lowest natural modes at a pose."""
         return self.assemble(self.configuration(**pose)).modes(count)
 
-    def complete_order(self, coupling: Coupling = "averaged") -> CompleteOrder:
+    def complete_order(self, coupling: Coupling = "averaged", cache: Path | None = None) -> CompleteOrder:
         """The full finite-element model of the assembly, which the reduced one is held against.
 
         coupling: of every interface, one node each. Parts are factorized when first needed: keep it for several poses.
+        cache: a folder where solved poses are kept, and found again while nothing that decides them has changed.
         """
         from .complete_order import CompleteOrder
 
-        return CompleteOrder(self.description, self.joints, coupling)
+        return CompleteOrder(self.description, self.joints, coupling, cache)
 
     def replace(self, changes: Mapping[str, object]) -> Machine:
         """A new machine with entries of its description changed, such as ``{"joints.P.drive.nut": 1.0e5}``.

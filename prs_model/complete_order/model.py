@@ -5,6 +5,8 @@ from __future__ import annotations
 import logging
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
+from time import perf_counter
 
 from ..arrays import FloatArray
 from ..description import MachineDescription
@@ -14,6 +16,7 @@ from ..kinematics import Configuration
 from ..modes import Modes
 from ..reduction.super_element import SuperElement
 from ..synthesis import System, assemble
+from .cache import Solved, kept
 from .eigen import lowest
 from .inverse import Joined
 from .part import CompletePart
@@ -29,13 +32,15 @@ class CompleteModes:
 
     modes: with energies, characters and surfaces as those of a reduced system have them. Their coordinates are each
     body's rigid motions and its shapes in these very modes, so nothing else of that system is to be relied on.
-    residuals (c,): relative error bounds of the squared frequencies. size: number of DOFs. iterations: taken.
+    residuals (c,): relative error bounds of the squared frequencies. size: number of DOFs. iterations: taken. seconds:
+    that solving took, the parts' factorization included where this pose was the first; earlier, if from a cache.
     """
 
     modes: Modes
     residuals: FloatArray
     size: int
     iterations: int
+    seconds: float
 
     @property
     def frequencies(self) -> FloatArray:
@@ -47,13 +52,17 @@ class CompleteOrder:
     """The full finite-element model of a machine's assembly, with the interfaces of joints averaged or rigid.
 
     Parts are read and factorized when first needed, each kind once. Every interface has nodes of its own, also where
-    the machine's reduction ties several to one.
+    the machine's reduction ties several to one. cache: a folder where solved poses are kept by their content.
     """
 
     def __init__(
-        self, description: MachineDescription, joints: tuple[ElasticJoint, ...], coupling: Coupling = "averaged"
+        self,
+        description: MachineDescription,
+        joints: tuple[ElasticJoint, ...],
+        coupling: Coupling = "averaged",
+        cache: Path | None = None,
     ):
-        self.description, self.joints = description, joints
+        self.description, self.joints, self.cache = description, joints, cache
         self._stock = Stock(description, joints, coupling)
 
     def modes(self, configuration: Configuration, count: int = 8) -> CompleteModes:
@@ -61,16 +70,9 @@ class CompleteOrder:
 
         Raises PartFileError for a part that comes reduced, PrsError when the iteration does not come to rest.
         """
-        spaces = self._stock.subspaces(configuration)
-        joined = self._joined({name: space.part for name, space in spaces.items()}, configuration)
-        logger.info("complete order: %d DOFs, %d interface nodes", joined.size, len(joined.expansion) // 6)
-        solution = lowest(joined, spaces, lambda elements: self._assembled(elements, configuration), count)
-        logger.info("complete order: %d modes, iterations: %d", count, solution.iterations)
-        elements = {
-            name: pictured(enlarged(rigid_motions(part), solution.shapes[name])) for name, part in joined.bodies.items()
-        }
-        modes = self._assembled(elements, configuration).modes(count)
-        return CompleteModes(modes, solution.residuals, joined.size, solution.iterations)
+        solved = self._solved(configuration, count) if self.cache is None else self._found(configuration, count)
+        modes = self._assembled(solved.elements, configuration).modes(count)
+        return CompleteModes(modes, solved.residuals, solved.size, solved.iterations, solved.seconds)
 
     def joined(self, configuration: Configuration) -> Joined:
         """The parts of all bodies, with their interfaces where they are in a configuration, and what joins them.
@@ -79,6 +81,25 @@ class CompleteOrder:
         """
         parts = {name: space.part for name, space in self._stock.subspaces(configuration).items()}
         return self._joined(parts, configuration)
+
+    def _found(self, configuration: Configuration, count: int) -> Solved:
+        """The modes out of the cache, where they are put if they were not there."""
+        place = kept(Path(self.cache or ""), self.description, self._stock.settings, configuration, count)
+        if (solved := place.find()) is None:
+            place.keep(solved := self._solved(configuration, count))
+        return solved
+
+    def _solved(self, configuration: Configuration, count: int) -> Solved:
+        start = perf_counter()
+        spaces = self._stock.subspaces(configuration)
+        joined = self._joined({name: space.part for name, space in spaces.items()}, configuration)
+        logger.info("complete order: %d DOFs, %d interface nodes", joined.size, len(joined.expansion) // 6)
+        solution = lowest(joined, spaces, lambda elements: self._assembled(elements, configuration), count)
+        logger.info("complete order: %d modes, iterations: %d", count, solution.iterations)
+        elements = {
+            name: pictured(enlarged(rigid_motions(part), solution.shapes[name])) for name, part in joined.bodies.items()
+        }
+        return Solved(elements, solution.residuals, joined.size, solution.iterations, perf_counter() - start)
 
     def _joined(self, parts: Mapping[str, CompletePart], configuration: Configuration) -> Joined:
         system = self._assembled({name: part.stand_in() for name, part in parts.items()}, configuration)

@@ -103,6 +103,37 @@ def seen(modes: prs.Modes) -> np.ndarray:
     return np.vstack([modes.output_shapes, *(each.reshape(-1, each.shape[-1]) for each in surfaces)]).T
 
 
+def test_a_solved_pose_is_found_again_until_something_changes(tmp_path, caplog):
+    caplog.set_level("INFO")
+    cache = tmp_path / "cache"
+    machine = pair(tmp_path, "averaged", ELASTIC)
+    first = machine.complete_order(cache=cache).modes(machine.configuration(), 4)
+    caplog.clear()
+    again = machine.complete_order(cache=cache).modes(machine.configuration(), 4)
+    assert not caplog.records
+    assert np.array_equal(again.frequencies, first.frequencies)
+    assert seen(again.modes) == pytest.approx(seen(first.modes), abs=1e-3 * np.abs(seen(first.modes)).max())
+    assert (again.seconds, again.size, again.iterations) == (first.seconds, first.size, first.iterations)
+    softer = machine.replace({"joints.seat.stiffness.uy": 1.0e8})
+    assert softer.complete_order(cache=cache).modes(machine.configuration(), 4).frequencies[0] < first.frequencies[0]
+    rigid = machine.complete_order("rigid", cache=cache).modes(machine.configuration(), 4)
+    assert np.all(rigid.frequencies > first.frequencies)
+    write(box((0.2, 0.1, 0.09), (2, 1, 1)), tmp_path / "upper.msh")
+    thicker = machine.complete_order(cache=cache).modes(machine.configuration(), 4)
+    assert thicker.frequencies != pytest.approx(first.frequencies, rel=1e-3)
+
+
+def test_damaged_files_of_the_cache_are_made_anew(tmp_path, caplog):
+    machine = pair(tmp_path, "averaged", ELASTIC)
+    first = machine.complete_order(cache=tmp_path / "cache").modes(machine.configuration(), 4)
+    for name, damage in {"upper.npz": b"PK", "modes.json": b"{}"}.items():
+        next((tmp_path / "cache").glob(f"*/{name}")).write_bytes(damage)
+        caplog.clear()
+        again = machine.complete_order(cache=tmp_path / "cache").modes(machine.configuration(), 4)
+        assert "not used, and made anew" in caplog.text
+        assert again.frequencies == pytest.approx(first.frequencies, rel=1e-12)
+
+
 def test_a_reduced_part_is_refused():
     machine = prs.load_machine("hexapod")
     with pytest.raises(prs.PartFileError, match="comes reduced: the complete order needs full matrices"):
