@@ -26,6 +26,7 @@ from .grips import Grip
 REPEATED = 1e-9  # of the largest energy: what remains of a shape that others make up
 STILL = 1e-8  # of the slowest rate of a coordinate: the eigenvalue of a motion that the joints leave free
 SINGULAR = 1e-11
+STRAINED = 1e-8  # of a shape's energy in the norm of `energy_matrix`
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,6 +90,23 @@ def static_shapes(part: Held, reach: float) -> FloatArray:
     patterns = dict.fromkeys(grip.pattern for grip in part.grips)
     moved = [part.equilibrium(*_beyond(part, pattern, twists)) for pattern in patterns]
     return np.hstack([np.zeros((part.element.size, 0)), *moved])
+
+
+def rigid_and_elastic(part: Held, static: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Combinations (6 p, r) of static shapes: the part's rigid motions, if it is free, and independent shapes besides.
+
+    All that lies beyond a free part's joints moving as one moves it rigidly.
+    """
+    energy = energy_matrix(part, static)
+    together = np.tile(np.eye(6), (static.shape[1] // 6, 1))
+    moved = static @ together
+    strained = _energy_of(part.element.stiffness, moved) > STRAINED * _energy_of(energy, moved)
+    if part.element.grounded or np.any(strained):
+        return together[:, :0], independent(energy, static)
+    overlap = static.T @ energy @ static
+    share = np.linalg.solve(together.T @ overlap @ together, together.T @ overlap)
+    others = np.eye(static.shape[1]) - together @ share
+    return together, others @ independent(energy, static @ others)
 
 
 def reach_of(element: SuperElement) -> float:

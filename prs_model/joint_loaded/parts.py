@@ -15,7 +15,7 @@ from ..kinematics import Configuration
 from ..reduction import SuperElement, TravellingElement
 from ..reduction.from_model import AWAITS_JOINTS
 from ..reduction.gate import JOINT_LOADED
-from .basis import Held, energy_matrix, independent, joint_loaded_basis, reach_of, static_shapes
+from .basis import Held, joint_loaded_basis, reach_of, rigid_and_elastic, static_shapes
 from .grips import grips
 
 Part = SuperElement | TravellingElement
@@ -63,18 +63,20 @@ def _loaded(
 def _travelling(part: TravellingElement, stations: Sequence[Held]) -> TravellingElement:
     """In static shapes and in the modes that it came with: the same combinations of them at every station.
 
-    Both are smooth along the way; modes under the joints would change places.
+    Both are smooth along the way; modes under the joints would change places. A free part's rigid motions come first:
+    they strain nothing, and the stiffness of the rest is positive definite, and interpolated so that it stays so.
     """
     middle = len(stations) // 2
     reach = reach_of(part.elements[middle])
     statics = [static_shapes(station, reach) for station in stations]
-    kept = independent(energy_matrix(stations[middle], statics[middle]), statics[middle])
+    rigid, elastic = rigid_and_elastic(stations[middle], statics[middle])
     modes = np.eye(part.size)[:, part.size - part.n_modes :]
-    bases = [np.hstack([static @ kept, modes]) for static in statics]
+    bases = [np.hstack([static @ rigid, static @ elastic, modes]) for static in statics]
     elements = tuple(_in_shapes(element, basis) for element, basis in zip(part.elements, bases, strict=True))
     if (products := part.products) is not None:
         products = np.einsum("iab,ijac,jcd->ijbd", bases, products, bases, optimize=True)
-    loaded = replace(part, elements=elements, products=products)
+    strained = tuple(range(rigid.shape[1], bases[0].shape[1]))
+    loaded = replace(part, elements=elements, products=products, contact=strained)
     loaded.check()
     return loaded
 

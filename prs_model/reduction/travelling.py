@@ -39,13 +39,15 @@ class TravellingElement:
     in flexibility form (see `flexibility_form`), in which they are smooth along a slender part too.
 
     products: (s, s, n, n), V_i^T M V_j of the stations' bases V_k, so that the mass is that of the interpolated shapes;
-    without them it is interpolated entry by entry.
+    without them it is interpolated entry by entry. contact: coordinates whose stiffness is interpolated through its
+    inverse, which must exist; by default those that the travelling nodes follow, where it does.
     """
 
     joint: str
     stations: FloatArray
     elements: tuple[SuperElement, ...]
     products: FloatArray | None = None
+    contact: tuple[int, ...] | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "stations", read_only(self.stations))
@@ -148,6 +150,8 @@ class TravellingElement:
     @cached_property
     def _contact(self) -> IntArray:
         """Coordinates of the nodes that move along the body, where they are the same at all stations."""
+        if self.contact is not None:
+            return np.array(self.contact, dtype=np.int64)
         moving = np.flatnonzero(np.ptp(self._positions, axis=0).max(axis=1) > 1e-9)
         used = np.array([np.any(each.motions[moving] != 0.0, axis=(0, 1)) for each in self.elements])
         contact = np.flatnonzero(np.all(used, axis=0))
