@@ -13,7 +13,7 @@ from ..description import MachineDescription
 from ..description.schema import Coupling
 from ..joints import ElasticJoint
 from ..kinematics import Configuration
-from ..modes import Modes
+from ..modes.modes import Modes, check_count
 from ..reduction.super_element import SuperElement
 from ..synthesis import System, assemble
 from .cache import Solved, kept
@@ -68,8 +68,10 @@ class CompleteOrder:
     def modes(self, configuration: Configuration, count: int = 8) -> CompleteModes:
         """The lowest modes in a configuration.
 
-        Raises PartFileError for a part that comes reduced, PrsError when the iteration does not come to rest.
+        Raises PartFileError for a part that comes reduced, PrsError when `count` is no whole number above zero or the
+        iteration does not come to rest.
         """
+        check_count(count)
         solved = self._solved(configuration, count) if self.cache is None else self._found(configuration, count)
         modes = self._assembled(solved.elements, configuration).modes(count)
         return CompleteModes(modes, solved.residuals, solved.size, solved.iterations, solved.seconds)

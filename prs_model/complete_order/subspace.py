@@ -39,7 +39,7 @@ class Subspace:
             self.part.stand_in(),
             stiffness=self.stiffness,
             mass=self.mass,
-            motions=(self.part.outputs @ self.vectors).reshape(-1, 6, self.size),
+            motions=(self.part.outputs @ self.vectors).reshape(len(self.part.ties), 6, self.size),
             labels=tuple(f"shape {i + 1}" for i in range(self.size)),
         )
 

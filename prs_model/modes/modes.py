@@ -74,10 +74,15 @@ class Modes:
 
 def modes_of(system: System, count: int) -> Modes:
     """The lowest `count` modes of a system. Raises PrsError when `count` is not a whole number above zero."""
-    if not isinstance(count, int | np.integer) or isinstance(count, bool) or count < 1:
-        raise PrsError(f"found {count!r} modes asked for, expected a whole number above zero")
+    check_count(count)
     labels = [" ".join(filter(None, row)) for row in system.index]
     return Modes(system, *lowest_modes(system.mass, system.stiffness, int(count), labels))
+
+
+def check_count(count: object) -> None:
+    """Raises PrsError when so many modes cannot be asked for."""
+    if not isinstance(count, int | np.integer) or isinstance(count, bool) or count < 1:
+        raise PrsError(f"found {count!r} modes asked for, expected a whole number above zero")
 
 
 def _quadratic(shapes: FloatArray, matrix: FloatArray) -> FloatArray:

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.linalg import block_diag, eigh, null_space
 
 import prs_model as prs
+from tests.complete_order.monolithic import monolithic_frequencies
 from tests.meshes import STEEL, box, write
 
 URDF = """<robot name="pair">
@@ -59,17 +59,8 @@ def test_woodbury_equals_the_monolithic_matrix(tmp_path, coupling, law):
     complete = machine.complete_order(coupling)
     modes = complete.modes(machine.configuration(), 6)
     joined = complete.joined(machine.configuration())
-    bodies = joined.bodies
-    stiffness = block_diag(*(part.model.stiffness.toarray() for part in bodies.values()))
-    mass = block_diag(*(part.model.mass.toarray() for part in bodies.values()))
-    outputs = block_diag(*(part.outputs.toarray() for part in bodies.values()))
-    independent = np.linalg.pinv(joined.expansion) @ outputs
-    stiffness += independent.T @ joined.springs @ independent
-    allowed = null_space(outputs - joined.expansion @ independent, rcond=1e-9)
-    stiffness, mass = (allowed.T @ matrix @ allowed for matrix in (stiffness, mass))
-    values = eigh(stiffness, mass, eigvals_only=True, subset_by_index=[0, 5])
-    assert modes.frequencies == pytest.approx(np.sqrt(values) / (2.0 * np.pi), rel=1e-8)
-    assert modes.size == sum(part.size for part in bodies.values())
+    assert modes.frequencies == pytest.approx(monolithic_frequencies(joined, 6), rel=1e-8)
+    assert modes.size == joined.size == sum(part.size for part in joined.bodies.values())
 
 
 @pytest.mark.parametrize("coupling", ["averaged", "rigid"])
@@ -132,6 +123,22 @@ def test_damaged_files_of_the_cache_are_made_anew(tmp_path, caplog):
         again = machine.complete_order(cache=tmp_path / "cache").modes(machine.configuration(), 4)
         assert "not used, and made anew" in caplog.text
         assert again.frequencies == pytest.approx(first.frequencies, rel=1e-12)
+
+
+def test_high_modes_are_found_from_few_interfaces(tmp_path):
+    machine = pair(tmp_path, "averaged", ELASTIC).replace(
+        {"bodies.upper.interfaces": {"seat": {"set": "x0"}}, "output.node": "upper.seat"}
+    )
+    complete = machine.complete_order()
+    modes = complete.modes(machine.configuration(), 30)
+    expected = monolithic_frequencies(complete.joined(machine.configuration()), 30)
+    assert modes.frequencies == pytest.approx(expected, rel=1e-8)
+
+
+def test_no_modes_asked_for_is_said(tmp_path):
+    machine = pair(tmp_path, "averaged", ELASTIC)
+    with pytest.raises(prs.PrsError, match="found 0 modes asked for, expected a whole number above zero"):
+        machine.complete_order().modes(machine.configuration(), 0)
 
 
 def test_a_reduced_part_is_refused():
