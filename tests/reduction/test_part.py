@@ -16,7 +16,7 @@ from prs_reducers.solid import SolidReducer
 from tests.meshes import STEEL, box, steel, write
 
 STEEL_MM = {"units": "mm-N-tonne-s", "material": STEEL}
-DEFAULTS = ReductionDefaults(store="reduced", modes=2)
+DEFAULTS = ReductionDefaults(method="craig-bampton", store="reduced", modes=2)
 
 
 def body(**changes: object) -> Body:
@@ -118,6 +118,14 @@ def test_settings_decide_which_stored_element_is_used(folder):
     for count, each in enumerate(different, start=2):
         build_part("rod", each, DEFAULTS, folder)
         assert len(stored(folder)) == count
+
+
+def test_a_joint_loaded_part_is_stored_once_for_any_number_of_modes(folder):
+    """Its modes depend on the joints, and are found when the machine is loaded."""
+    defaults = ReductionDefaults(store="reduced")
+    elements = [build_part("rod_1", body(modes=modes), defaults, folder, stem="rod") for modes in (2, 5)]
+    assert elements[0] is elements[1]
+    assert len(stored(folder)) == 1
 
 
 def test_what_is_missing_is_explained(folder):
