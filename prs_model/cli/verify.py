@@ -56,6 +56,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--curve", action="store_true", help="each reduction with 0, 1, 2, 3, 5, 10 modes in every part"
     )
     parser.add_argument(
+        "--bounds", action="store_true", help="also with travelling contacts reduced where they are at every pose"
+    )
+    parser.add_argument(
         "--stiffness",
         nargs="+",
         type=_factor,
@@ -131,7 +134,8 @@ def _verified(machine: Machine, options: argparse.Namespace) -> Outcome:
     poses = _poses(machine, options)
     reductions = REDUCTIONS if options.reductions is None else reductions_named(options.reductions)
     settings = {"models": options.models, "reductions": reductions, "count": options.count, "cache": _cache(options)}
-    reports = [verify(machine, poses, curve=curve_of(reductions) if options.curve else (), **settings)]
+    curve = curve_of(reductions) if options.curve else ()
+    reports = [verify(machine, poses, curve=curve, in_place=options.bounds, **settings)]
     for factor in options.stiffness:
         reports.append(verify(with_joint_stiffness(machine, factor), poses, joint_stiffness=factor, **settings))
     files = () if options.output is None else write_all(reports, options.output, _command())

@@ -18,11 +18,7 @@ def as_dict(report: VerificationReport) -> dict[str, Any]:
         "poses": [{name: float(value) for name, value in pose.items()} for pose in report.poses],
         "pose_units": {name: kind.label(SI) for name, kind in report.coordinates.items()},
         "models": [_run(run) | _complete(run) for run in report.models],
-        "reductions": [
-            _run(run)
-            | {"against": run.own, "least_margin": report.least_margin(run), "in_curve": _in_curve(report, run)}
-            for run in report.reductions
-        ],
+        "reductions": [_run(run) | _reduced(report, run) for run in report.reductions],
         "comparisons": [_comparison(each, whole=each.reduction not in report.curve) for each in report.comparisons],
     }
 
@@ -47,8 +43,13 @@ def _complete(run: ModelRun) -> dict[str, Any]:
     }
 
 
-def _in_curve(report: VerificationReport, run: ModelRun) -> bool:
-    return run.name in report.curve
+def _reduced(report: VerificationReport, run: ModelRun) -> dict[str, Any]:
+    return {
+        "against": run.own,
+        "least_margin": report.least_margin(run),
+        "least_margin_in_place": report.least_margin_in_place(run),
+        "in_curve": run.name in report.curve,
+    }
 
 
 def _comparison(each: Comparison, *, whole: bool) -> dict[str, Any]:

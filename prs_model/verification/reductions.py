@@ -56,7 +56,11 @@ REDUCTIONS = (
     Reduction("rigid-interface", "rigid, one node an interface", "B", _craig_bampton("rigid", "interface")),
     Reduction("averaged-interface", "averaged, one node an interface", "A", _craig_bampton("averaged", "interface")),
     Reduction(
-        "joint-loaded", "joint-loaded", "A", {"method": "joint-loaded", "coupling": None, "tie": None}, modes=None
+        "joint-loaded",
+        "shapes under the joints' springs",
+        "A",
+        {"method": "joint-loaded", "coupling": None, "tie": None},
+        modes=None,
     ),
 )
 """The four that are compared. Craig-Bampton's have the paper's three modes in every part, the joint-loaded one as many

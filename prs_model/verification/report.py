@@ -22,7 +22,8 @@ class ModelRun:
     frequencies (poses, c) [Hz], ascending; c is more than the count that was asked for, so that pairs are not cut.
     characters: of the modes of every pose. seconds (poses,): taken for each; preparation [s]: before the first pose.
     residuals (poses, c): error bounds of the squared frequencies, of a complete model. peak_memory [bytes]: of the
-    process until then, None where the system does not say. reference_modes: at the first pose, for pictures.
+    process until then, None where the system does not say or poses came from a cache. reference_modes: at the first
+    pose, for pictures. in_place (poses, count) [Hz]: with travelling contacts reduced where they are, not interpolated.
     """
 
     name: str
@@ -38,6 +39,7 @@ class ModelRun:
     peak_memory: float | None = None
     family: str = ""
     modes_per_part: int | None = None
+    in_place: FloatArray | None = None
 
     @property
     def first_seconds(self) -> float:
@@ -115,5 +117,12 @@ class VerificationReport:
 
     def least_margin(self, reduction: ModelRun) -> float | None:
         """The least of f_reduced / f_complete - 1 against the model of the same interface kinematics, if that ran."""
-        own = [each for each in self.comparisons if (each.reduction, each.model) == (reduction.name, reduction.own)]
-        return float(own[0].margins.min()) if own else None
+        return self._margin(reduction, reduction.frequencies)
+
+    def least_margin_in_place(self, reduction: ModelRun) -> float | None:
+        """The same with travelling contacts reduced where they are, if that was asked for."""
+        return None if reduction.in_place is None else self._margin(reduction, reduction.in_place)
+
+    def _margin(self, reduction: ModelRun, frequencies: FloatArray) -> float | None:
+        own = [model.frequencies for model in self.models if model.name == reduction.own]
+        return float((frequencies[:, : self.count] / own[0][:, : self.count] - 1.0).min()) if own else None

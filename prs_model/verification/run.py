@@ -2,31 +2,19 @@
 
 from __future__ import annotations
 
-import logging
-import sys
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from time import perf_counter
 
 import numpy as np
 
-from ..arrays import FloatArray
 from ..errors import PrsError, UnknownNameError
-from ..kinematics import Configuration
 from ..machine import Machine
-from ..modes import Modes
-from ..modes.mac import Observation, in_common, observe, pairing
-from ..readable import pose_text
-from ..synthesis import System, assemble
+from ..modes.mac import in_common, pairing
 from .full_parts import check_full_parts
 from .poses import default_poses, distinct
-from .reductions import COUPLINGS, REDUCTIONS, TITLES, Reduction
-from .report import Comparison, ModelRun, VerificationReport
-
-EXTRA = 4  # modes beyond those asked for, so that pairs and clusters at the end are not cut
-
-logger = logging.getLogger("prs_model")
+from .reductions import COUPLINGS, REDUCTIONS, Reduction
+from .report import Comparison, VerificationReport
+from .runs import Observed, complete_run, reduced_run
 
 
 def verify(
@@ -39,21 +27,25 @@ def verify(
     count: int = 8,
     cache: Path | None = None,
     joint_stiffness: float = 1.0,
+    in_place: bool = False,
 ) -> VerificationReport:
     """Compare the lowest `count` modes of reduced models with those of the complete order.
 
     poses: coordinate to value [m, rad], those left out at their reference; default: `default_poses`. models: "A" with
     interfaces averaged, "B" with rigid ones. curve: further reductions, for the curve of error against coordinates.
     cache: a folder that keeps reduced parts and solved poses. joint_stiffness: what the report shall say of the machine
-    (see `with_joint_stiffness`).
+    (see `with_joint_stiffness`). in_place: also reduce travelling contacts where they are at every pose, for the bound.
     Raises PrsError or PartFileError when parts have no full matrices or too few coordinates, UnreachablePoseError.
     """
     check_full_parts(machine)
     wanted = _poses(machine, poses)
     configurations = [machine.configuration(**pose) for pose in wanted]
     variants = [(each, _stored_in(each.of(machine), cache)) for each in (*reductions, *curve)]
-    complete = [_complete(machine, name, configurations, count, cache) for name in _known(models)]
-    reduced = [_reduced(variant, each, configurations, count) for each, variant in variants]
+    complete = [complete_run(machine, name, configurations, count, cache) for name in _known(models)]
+    reduced = [
+        reduced_run(variant, each, configurations, count, in_place=in_place and each not in curve)
+        for each, variant in variants
+    ]
     return VerificationReport(
         machine=machine.name,
         title=machine.description.file.title,
@@ -66,14 +58,6 @@ def verify(
         joint_stiffness=joint_stiffness,
         curve=tuple(each.name for each in curve),
     )
-
-
-@dataclass(frozen=True, eq=False)
-class Observed:
-    """A run with the shapes of its modes at every pose."""
-
-    run: ModelRun
-    shapes: Sequence[Observation]
 
 
 def compare(reduced: Observed, complete: Observed, count: int) -> Comparison:
@@ -118,104 +102,3 @@ def _known(models: Sequence[str]) -> tuple[str, ...]:
 def _stored_in(machine: Machine, cache: Path | None) -> Machine:
     """The machine with its parts reduced anew, or kept in the cache; what is stored with the machine stays as it is."""
     return machine.replace({"reduction.store": None if cache is None else str(cache / "parts")})
-
-
-def _complete(
-    machine: Machine, name: str, configurations: Sequence[Configuration], count: int, cache: Path | None
-) -> Observed:
-    logger.info("%s: %s", name, TITLES[name])
-    order = machine.complete_order(COUPLINGS[name])
-    residuals, sizes = [], []
-
-    def solve(configuration: Configuration) -> Modes:
-        solved = order.modes(configuration, count + EXTRA)
-        residuals.append(solved.residuals)
-        sizes.append(solved.size)
-        return solved.modes
-
-    poses = _over_poses(machine, name, solve, configurations)
-    run = ModelRun(
-        name=name,
-        title=TITLES[name],
-        own=name,
-        size=sizes[0],
-        frequencies=poses.frequencies,
-        characters=poses.characters,
-        seconds=poses.seconds,
-        preparation=0.0,
-        reference_modes=poses.first,
-        residuals=np.array(residuals),
-        peak_memory=peak_memory(),
-    )
-    return Observed(run, poses.shapes)
-
-
-def _reduced(machine: Machine, reduction: Reduction, configurations: Sequence[Configuration], count: int) -> Observed:
-    logger.info("%s: %s", reduction.name, reduction.title)
-
-    def system(configuration: Configuration) -> System:
-        return assemble(machine.description, machine.parts, machine.joints, configuration)
-
-    start = perf_counter()
-    size = system(configurations[0]).size
-    preparation = perf_counter() - start
-    if size < count:
-        raise PrsError(f"{reduction.name}: found {size} coordinates, expected {count} at least; compare fewer modes")
-    most = min(size, count + EXTRA)
-    poses = _over_poses(machine, reduction.name, lambda each: system(each).modes(most), configurations)
-    run = ModelRun(
-        name=reduction.name,
-        title=reduction.title,
-        own=reduction.own,
-        size=size,
-        frequencies=poses.frequencies,
-        characters=poses.characters,
-        seconds=poses.seconds,
-        preparation=preparation,
-        reference_modes=poses.first,
-        family=reduction.family,
-        modes_per_part=reduction.modes,
-    )
-    return Observed(run, poses.shapes)
-
-
-@dataclass(frozen=True, eq=False)
-class _Poses:
-    """What tables and comparisons need of the modes at every pose; `first` are those at the first one."""
-
-    first: Modes
-    frequencies: FloatArray
-    characters: tuple[tuple[str, ...], ...]
-    shapes: list[Observation]
-    seconds: FloatArray
-
-
-def _over_poses(
-    machine: Machine,
-    name: str,
-    solve: Callable[[Configuration], Modes],
-    configurations: Sequence[Configuration],
-) -> _Poses:
-    first: list[Modes] = []
-    frequencies, characters, shapes, seconds = [], [], [], []
-    for k, configuration in enumerate(configurations):
-        place = pose_text(configuration.pose, machine.kinematics.task.coordinates) or "its only pose"
-        logger.info("%s: pose %d of %d, %s", name, k + 1, len(configurations), place)
-        start = perf_counter()
-        modes = solve(configuration)
-        seconds.append(perf_counter() - start)
-        frequencies.append(modes.frequencies)
-        characters.append(tuple(map(str, modes.characters())))
-        shapes.append(observe(modes))
-        first = first or [modes]
-    return _Poses(first[0], np.array(frequencies), tuple(characters), shapes, np.array(seconds))
-
-
-def peak_memory() -> float | None:
-    """The most memory [bytes] this process has held until now; None where the system does not say."""
-    try:
-        import resource
-    except ImportError:  # Windows
-        return None
-    kilobytes = 1.0 if sys.platform == "darwin" else 1024.0
-    return kilobytes * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss

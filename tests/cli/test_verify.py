@@ -34,7 +34,7 @@ def test_tables_and_progress(folder, capsys):
     status, out, err = run(capsys, "verify", folder, *SHORT, "--pose", "x=0.4", "--pose", "phi=10deg", "y=50mm")
     assert status == 0
     assert "2    x 375 mm, y 50 mm, phi 10 deg" in out
-    assert re.search(r"^A +complete order, interfaces averaged +765 ", out, re.MULTILINE)
+    assert re.search(r"^A +complete order, interfaces averaged +1053 ", out, re.MULTILINE)
     assert re.search(r"^averaged-interface +averaged, one node an interface +66 .* A +\+", out, re.MULTILINE)
     assert "A: pose 2 of 2, x 375 mm, y 50 mm, phi 10 deg" in err
 
@@ -77,7 +77,7 @@ def test_a_quick_look_is_taken_at_a_copy(folder, tmp_path, capsys):
     status, out, err = run(capsys, "verify", folder, *SHORT, "--pose", "x=0.4", "--size", "2.5")
     assert status == 0
     assert "meshing at 2.5" in err
-    assert re.search(r"^A +complete order, interfaces averaged +624 ", out, re.MULTILINE)
+    assert re.search(r"^A +complete order, interfaces averaged +912 ", out, re.MULTILINE)
     assert before == {path.name: path.read_bytes() for path in Path(folder).iterdir() if path.name != "rebuild.py"}
     Path(folder, "rebuild.py").write_text("raise SystemExit('no gmsh here')")
     status, _, err = run(capsys, "verify", folder, *SHORT, "--size", "2")

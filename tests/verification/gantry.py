@@ -1,6 +1,11 @@
-"""A small gantry whose parts are boxes of solid elements: column, table, saddle and arm, moved by x, y and phi."""
+"""A small gantry whose parts are boxes of solid elements: column, table, saddle and arm, moved by x, y and phi.
+
+The table rides on the column in two places. They stay where they are on the column, or travel along it with x.
+"""
 
 from pathlib import Path
+
+import numpy as np
 
 import prs_model as prs
 from tests.meshes import STEEL, box, write
@@ -39,7 +44,7 @@ bodies:
         members:
           - {{name: near, set: z1, box: {{x: [-0.01, 0.11]}}}}
           - {{name: far, set: z1, box: {{x: [0.14, 0.26]}}}}
-{table}    interfaces:
+{travel}{table}    interfaces:
       rail:
         at: [0.125, 0.05, 0]
         members:
@@ -68,19 +73,22 @@ joints:
     drive: {{kind: constant, rotational_stiffness: 5.0e5}}
 output: {{node: arm.tip, frame: arm}}
 {more}"""
+TRAVEL = "        travel: {joint: slide_x, along: [1, 0, 0], stations: [-0.2, -0.07, 0.07, 0.2]}\n"
+START = -0.2  # of the column along x
 SIZES = {
-    "column": ((0.3, 0.1, 0.3), (3, 1, 2)),
+    "column": ((0.7, 0.1, 0.3), (7, 1, 2)),
     "table": ((0.3, 0.1, 0.06), (3, 1, 1)),
     "saddle": ((0.2, 0.1, 0.06), (2, 1, 1)),
     "arm": ((0.3, 0.05, 0.05), (3, 1, 1)),
 }
 
 
-def gantry(folder: Path, more: str = "") -> prs.Machine:
-    """Write the machine's folder and load it. more: further sections of machine.yaml."""
+def gantry(folder: Path, more: str = "", travel: str = "") -> prs.Machine:
+    """Write the machine's folder and load it. more: further sections of machine.yaml; travel: of the column's rail."""
     for name, (size, cells) in SIZES.items():
-        write(box(size, cells), folder / f"{name}.msh")
+        start = START if name == "column" else 0.0
+        write(box(size, cells, shape=lambda points, x=start: points + np.array([x, 0.0, 0.0])), folder / f"{name}.msh")
     parts = {name: PART.format(name=name, steel=STEEL) for name in SIZES}
     (folder / "gantry.urdf").write_text(URDF)
-    (folder / "machine.yaml").write_text(MACHINE.format(**parts, more=more))
+    (folder / "machine.yaml").write_text(MACHINE.format(**parts, more=more, travel=travel))
     return prs.load_machine(folder)

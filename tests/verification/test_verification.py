@@ -18,10 +18,11 @@ from prs_model.verification import (
 )
 from prs_model.verification.pages import page
 from prs_model.verification.plain import as_dict
-from tests.verification.gantry import gantry
+from tests.verification.gantry import TRAVEL, gantry
 
 POSES = "verification: {poses: {x: [0.3, 0.45], phi: [0.5]}}\n"
 COUNT = 6
+AVERAGED = ("averaged-interface", "joint-loaded")
 
 
 @pytest.fixture(scope="module")
@@ -62,6 +63,17 @@ def test_no_reduced_frequency_lies_below_the_model_of_its_own_kinematics(report)
     margins = {run.name: report.least_margin(run) for run in report.reductions}
     assert all(margin > -1e-8 for margin in margins.values()), margins
     assert report.comparison("averaged-interface", "B").margins.min() < -1e-2
+
+
+def test_the_bound_holds_between_stations_with_contacts_in_place(tmp_path):
+    """Interpolation is no subspace; whether it falls below is chance, but in place it cannot."""
+    machine = gantry(tmp_path, travel=TRAVEL)
+    poses = [{"x": 0.375}, {"x": 0.44, "phi": 0.3}]
+    report = verify(machine, poses, models=["A"], count=4, in_place=True, reductions=reductions_named(AVERAGED))
+    for run in report.reductions:
+        assert run.in_place == pytest.approx(run.frequencies[:, :4], rel=2e-2)
+        assert np.abs(run.in_place / run.frequencies[:, :4] - 1.0).max() > 1e-9
+        assert report.least_margin_in_place(run) > -1e-8
 
 
 def test_the_same_kinematics_agree_and_one_node_a_joint_costs(report):
