@@ -16,7 +16,8 @@ from ..reduction.super_element import SuperElement, node_labels
 from ..reduction.surface import Surface
 from .part import CompletePart
 
-NEW = 1e-12  # of a motion's energy: what is left of it when all known motions are taken out is round-off below
+NEW = 1e-12  # of a motion's energy: below, what is left when all known motions are taken out of it is round-off
+APART = 1e-8  # of the energy of new motions: below, a combination of them is nothing of its own
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,17 +73,21 @@ def enlarged(space: Subspace, shapes: FloatArray) -> Subspace:
     """The subspace with what is new in `shapes` (n, c)."""
     model, shift, vectors = space.part.model, space.part.shift, space.vectors
     loads = model.stiffness @ shapes - shift * (model.mass @ shapes)
-    energy = np.einsum("ij,ij->j", shapes, loads)
-    shapes, loads = (each[:, energy > 0.0] / np.sqrt(energy[energy > 0.0]) for each in (shapes, loads))
-    overlap = vectors.T @ loads
-    left, turn = eigh(shapes.T @ loads - overlap.T @ overlap)
-    fresh = turn[:, left > NEW] / np.sqrt(left[left > NEW])
-    added = shapes @ fresh - vectors @ (overlap @ fresh)
+    before = np.einsum("ij,ij->j", shapes, loads)
+    shapes = shapes - vectors @ (vectors.T @ loads)
+    strained, moved = model.stiffness @ shapes, model.mass @ shapes
+    energy = np.einsum("ij,ij->j", shapes, strained - shift * moved)
+    new = np.flatnonzero(energy > NEW * before)
+    scale = 1.0 / np.sqrt(energy[new])
+    weight, turn = eigh((shapes[:, new] * scale).T @ (strained - shift * moved)[:, new] * scale)
+    change = np.zeros((len(energy), np.count_nonzero(weight > APART)))
+    change[new] = scale[:, None] * turn[:, weight > APART] / np.sqrt(weight[weight > APART])
+    added = shapes @ change
     return Subspace(
         part=space.part,
         vectors=np.hstack([vectors, added]),
-        stiffness=_bordered(space.stiffness, vectors, added, model.stiffness @ added),
-        mass=_bordered(space.mass, vectors, added, model.mass @ added),
+        stiffness=_bordered(space.stiffness, vectors, added, strained @ change),
+        mass=_bordered(space.mass, vectors, added, moved @ change),
     )
 
 
