@@ -22,10 +22,10 @@ def bar() -> FiniteElementModel:
     return steel(box((0.3, 0.1, 0.08), (3, 1, 1)))
 
 
-def part_of(model: FiniteElementModel, **interfaces: str) -> CompletePart:
+def part_of(model: FiniteElementModel, *, grounded: bool = False, **interfaces: str) -> CompletePart:
     selections = {name: Interface(set=each) for name, each in interfaces.items()}
     ties = interface_ties(model, selections, Settings("averaged", "interface", 0))
-    return tied_part(model, ties, skin(model), SHIFT, lambda: shifted(model, SHIFT), grounded=False)
+    return tied_part(model, ties, skin(model), SHIFT, lambda: shifted(model, SHIFT), grounded=grounded)
 
 
 def squares(mass: FloatArray, stiffness: FloatArray, count: int) -> FloatArray:
@@ -33,19 +33,19 @@ def squares(mass: FloatArray, stiffness: FloatArray, count: int) -> FloatArray:
 
 
 def test_a_motion_that_no_interface_feels_is_among_them():
-    """Beside the part stands another, held at its foot: no load on the interface excites it."""
-    one, other = bar(), bar().clamp(["x0"])
+    """Beside the part stands another, half as stiff: no load on the interface excites it."""
+    one = bar().clamp(["x0"])
     both = FiniteElementModel(
-        stiffness=csr_array(block_diag([one.stiffness, other.stiffness])),
-        mass=csr_array(block_diag([one.mass, other.mass])),
-        coordinates=np.vstack([one.coordinates, other.coordinates]),
-        dofs=np.vstack([one.dofs, other.dofs + [len(one.coordinates), 0]]),
+        stiffness=csr_array(block_diag([one.stiffness, one.stiffness / 2.0])),
+        mass=csr_array(block_diag([one.mass, one.mass])),
+        coordinates=np.vstack([one.coordinates, one.coordinates]),
+        dofs=np.vstack([one.dofs, one.dofs + np.array([len(one.coordinates), 0])]),
         node_sets=one.node_sets,
         set_weights=one.set_weights,
     )
-    space = response_space(part_of(both, end="x1"), 3)
-    lowest = squares(other.mass.toarray(), other.stiffness.toarray(), 1)
-    assert squares(space.mass, space.stiffness, 7)[-1:] == pytest.approx(lowest, rel=0.1)
+    space = response_space(part_of(both, grounded=True, end="x1"), 3)
+    lowest = squares(one.mass.toarray(), one.stiffness.toarray(), 1) / 2.0
+    assert squares(space.mass, space.stiffness, 1) == pytest.approx(lowest, rel=0.1)
 
 
 def test_enlarging_by_known_motions_adds_nothing():
