@@ -40,12 +40,14 @@ def verify(
     check_full_parts(machine)
     wanted = _poses(machine, poses)
     configurations = [machine.configuration(**pose) for pose in wanted]
-    variants = [(each, _stored_in(each.of(machine), cache)) for each in (*reductions, *curve)]
+    variants = [(each, _stored_in(each.of(machine), cache).description) for each in (*reductions, *curve)]
     complete = [complete_run(machine, name, configurations, count, cache) for name in _known(models)]
-    reduced = [
-        reduced_run(variant, each, configurations, count, in_place=in_place and each not in curve)
-        for each, variant in variants
-    ]
+    runs, comparisons = [], []
+    for each, described in variants:
+        bounds = in_place and each not in curve
+        reduced = reduced_run(Machine(described), each, configurations, count, in_place=bounds)
+        comparisons += [compare(reduced, model, count) for model in complete]
+        runs.append(reduced.run)
     return VerificationReport(
         machine=machine.name,
         title=machine.description.file.title,
@@ -53,8 +55,8 @@ def verify(
         coordinates=machine.kinematics.task.coordinates,
         count=count,
         models=tuple(each.run for each in complete),
-        reductions=tuple(each.run for each in reduced),
-        comparisons=tuple(compare(r, c, count) for r in reduced for c in complete),
+        reductions=tuple(runs),
+        comparisons=tuple(comparisons),
         joint_stiffness=joint_stiffness,
         curve=tuple(each.name for each in curve),
     )
@@ -101,4 +103,4 @@ def _known(models: Sequence[str]) -> tuple[str, ...]:
 
 def _stored_in(machine: Machine, cache: Path | None) -> Machine:
     """The machine with its parts reduced anew, or kept in the cache; what is stored with the machine stays as it is."""
-    return machine.replace({"reduction.store": None if cache is None else str(cache / "parts")})
+    return machine.replace({"reduction.store": None if cache is None else str(cache / "parts" / machine.name)})
