@@ -256,12 +256,14 @@ class Damping(Section):
 
 
 class Verification(Section):
-    """Poses at which ``prs-model verify`` holds reduced models against the complete order, besides the reference pose.
+    """Where ``prs-model verify`` holds reduced models against the complete order, and what others have found.
 
-    Every combination of these values, in the units of the file; coordinates left out stand at their reference.
+    poses: besides the reference, every combination of these values, in the units of the file; coordinates left out
+    stand at their reference. published [Hz]: frequencies at the reference pose by where they come from.
     """
 
-    poses: dict[str, tuple[Number, ...]]
+    poses: dict[str, tuple[Number, ...]] = Field(default_factory=dict)
+    published: dict[str, tuple[Frequency, ...]] = Field(default_factory=dict)
 
 
 class Output(Section):

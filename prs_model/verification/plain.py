@@ -15,6 +15,8 @@ def as_dict(report: VerificationReport) -> dict[str, Any]:
         "title": report.title,
         "joint_stiffness": report.joint_stiffness,
         "count": report.count,
+        "environment": report.environment,
+        "published_hz": {name: list(each) for name, each in report.published.items()},
         "poses": [{name: float(value) for name, value in pose.items()} for pose in report.poses],
         "pose_units": {name: kind.label(SI) for name, kind in report.coordinates.items()},
         "models": [_run(run) | _complete(run) for run in report.models],

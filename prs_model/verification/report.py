@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -92,7 +92,8 @@ class VerificationReport:
 
     poses: coordinate to value [m, rad], the first one shown in full; coordinates: what each is. count: modes compared.
     joint_stiffness: the factor on the stiffness of all joints. `curve` names the reductions that only serve the curve
-    of error against coordinates.
+    of error against coordinates. published: frequencies [Hz] at the first pose by where they come from. environment:
+    what times depend on.
     """
 
     machine: str
@@ -105,6 +106,8 @@ class VerificationReport:
     comparisons: tuple[Comparison, ...]
     joint_stiffness: float = 1.0
     curve: tuple[str, ...] = ()
+    published: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+    environment: str = ""
 
     @property
     def shown(self) -> tuple[ModelRun, ...]:

@@ -10,6 +10,7 @@ import numpy as np
 from ..errors import PrsError, UnknownNameError
 from ..machine import Machine
 from ..modes.mac import in_common, pairing
+from .environment import environment
 from .full_parts import check_full_parts
 from .poses import default_poses, distinct
 from .reductions import COUPLINGS, REDUCTIONS, Reduction
@@ -59,6 +60,8 @@ def verify(
         comparisons=tuple(comparisons),
         joint_stiffness=joint_stiffness,
         curve=tuple(each.name for each in curve),
+        published=_published(machine, wanted[0]) if joint_stiffness == 1.0 else {},
+        environment=environment(),
     )
 
 
@@ -90,6 +93,13 @@ def _poses(machine: Machine, poses: Sequence[Mapping[str, float]] | None) -> tup
     if not poses:
         raise PrsError("found no pose to verify at, expected one at least")
     return distinct([dict(machine.reference_pose) | dict(pose) for pose in poses])
+
+
+def _published(machine: Machine, first: Mapping[str, float]) -> dict[str, tuple[float, ...]]:
+    section = machine.description.file.verification
+    if section is None or first != dict(machine.reference_pose):
+        return {}
+    return {name: tuple(map(float, each)) for name, each in section.published.items()}
 
 
 def _known(models: Sequence[str]) -> tuple[str, ...]:

@@ -28,7 +28,7 @@ def tables(report: VerificationReport) -> tuple[Table, ...]:
     found = [_models(report), _reductions(report)]
     found += [_discrepancies(report, name) for name in names]
     found += [_reference(report, name) for name in names]
-    found += [_characters(report)]
+    found += [*_published(report), _characters(report)]
     return (*found, *_curve(report))
 
 
@@ -49,7 +49,7 @@ def _models(report: VerificationReport) -> Table:
     note = (
         "Times of a pose: the first one reads and factorizes the parts, further ones are the median. Peak memory is "
         "that of the process until the model was done, left out where poses came from the cache. Residuals bound the "
-        "error of squared frequencies, relative."
+        f"error of squared frequencies, relative. On {report.environment}."
     )
     return Table("Complete order", header, rows, note)
 
@@ -115,6 +115,27 @@ def _reference(report: VerificationReport, model: str) -> Table:
     close = report.comparison(found[0][0].name, model).clusters[0] if found else np.zeros(0)
     note = f"Frequency in Hz, its difference from {model} in %, MAC of the pair. {_close_modes(close)}".strip()
     return Table(f"Against {model}, {_first_pose(report)} (Table 3 of the paper)", header, tuple(rows), note)
+
+
+def _published(report: VerificationReport) -> tuple[Table, ...]:
+    """All models beside published frequencies, in the order of frequencies."""
+    if not report.published:
+        return ()
+    runs, first = (*report.shown, *report.models), next(iter(report.published))
+    rows = []
+    for k in range(report.count):
+        known = [f"{each[k]:.2f}" if k < len(each) else "" for each in report.published.values()]
+        ours = [
+            f"{run.frequencies[0, k]:.2f}{_beside(run.frequencies[0, k], report.published[first], k)}" for run in runs
+        ]
+        rows.append((f"{k + 1}", *known, *ours))
+    header = ("mode", *report.published, *(run.name for run in runs))
+    note = f"Frequencies in Hz, in their order, with the difference from '{first}' in %."
+    return (Table(f"Beside published frequencies, {_first_pose(report)}", header, tuple(rows), note),)
+
+
+def _beside(frequency: float, known: Sequence[float], k: int) -> str:
+    return f"  {1e2 * (frequency / known[k] - 1.0):+.2f}" if k < len(known) else ""
 
 
 def _characters(report: VerificationReport) -> Table:

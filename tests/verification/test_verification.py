@@ -20,7 +20,7 @@ from prs_model.verification.pages import page
 from prs_model.verification.plain import as_dict
 from tests.verification.gantry import TRAVEL, gantry
 
-POSES = "verification: {poses: {x: [0.3, 0.45], phi: [0.5]}}\n"
+POSES = "verification: {poses: {x: [0.3, 0.45], phi: [0.5]}, published: {measured: [100, 150]}}\n"
 COUNT = 6
 AVERAGED = ("averaged-interface", "joint-loaded")
 
@@ -108,6 +108,9 @@ def test_the_report_is_told_in_tables_and_numbers(report):
         assert f"Discrepancies against {model.name}" in told
         assert f"| {model.frequencies[0, 0]:.2f} |" in told
     assert "Error against the number of coordinates" in told
+    first, third = (f"{report.shown[0].frequencies[0, k]:.2f}" for k in (0, 2))
+    assert f"| 1 | 100.00 | {first}  {float(first) - 100.0:+.2f} |" in told
+    assert f"| 3 |  | {third} |" in told
     assert "| 2 | x 300 mm, y 25 mm, phi 28.648 deg |" in told
     rows = [line for line in told.splitlines() if line.startswith("|")]
     assert "nan" not in told
@@ -164,6 +167,7 @@ def test_poses_of_a_grid_and_random_ones(machine):
         ("{poses: {z: [1.0]}}", "verification.poses.z: found 'z', expected a pose coordinate (x, y, phi)"),
         ("{poses: {x: []}}", "verification.poses.x: found an empty list"),
         ("{poses: {x: [a]}}", "expected a number"),
+        ("{published: {paper: [0]}}", "expected a number above zero"),
     ],
 )
 def test_a_wrong_section_is_told(tmp_path, section, words):
