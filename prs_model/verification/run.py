@@ -38,6 +38,8 @@ def verify(
     (see `with_joint_stiffness`). in_place: also reduce travelling contacts where they are at every pose, for the bound.
     Raises PrsError or PartFileError when parts have no full matrices or too few coordinates, UnreachablePoseError.
     """
+    if not reductions:
+        raise PrsError("found no reduction to verify, expected one at least, such as those of REDUCTIONS")
     check_full_parts(machine)
     wanted = _poses(machine, poses)
     configurations = [machine.configuration(**pose) for pose in wanted]

@@ -47,9 +47,10 @@ def _models(report: VerificationReport) -> Table:
         for model in report.models
     )
     note = (
-        "Times of a pose: the first one reads and factorizes the parts, further ones are the median. Peak memory is "
-        "that of the process until the model was done, left out where poses came from the cache. Residuals bound the "
-        f"error of squared frequencies, relative. On {report.environment}."
+        "Times of a pose: the first one reads and factorizes the parts, further ones are the median; poses from the "
+        "cache have the times they took when solved. Peak memory is that of the process until the model was done, left "
+        "out where poses came from the cache. Residuals bound the error of squared frequencies, relative. "
+        f"On {report.environment}."
     )
     return Table("Complete order", header, rows, note)
 
@@ -68,10 +69,10 @@ def _reductions(report: VerificationReport) -> Table:
     )
     rows = tuple(_reduction(report, run) for run in report.shown)
     note = (
-        "'ratio' is the complete model's time of a further pose over the reduction's. "
-        "'against' names the complete model with the same interface kinematics. A reduced frequency cannot lie below "
-        "that model's, in the order of frequencies, but for round-off and for travelling contacts between stations; "
-        "'in place' is with these contacts reduced where they are (--bounds)."
+        "'parts' is reading or reducing all parts. 'ratio' is the complete model's time of a further pose over the "
+        "reduction's. 'against' names the complete model with the same interface kinematics. A reduced frequency cannot "
+        "lie below that model's, in the order of frequencies, but for round-off and for travelling contacts between "
+        "stations; 'in place' is with these contacts reduced where they are (--bounds)."
     )
     return Table("Reductions", header, rows, note)
 

@@ -195,5 +195,7 @@ def test_wrong_arguments_are_told(machine):
         reductions_named(["rigid"])
     with pytest.raises(prs.UnreachablePoseError, match="slide_x"):
         verify(machine, [{"x": 2.0}])
+    with pytest.raises(prs.PrsError, match="found no reduction"):
+        verify(machine, reductions=[])
     with pytest.raises(prs.PrsError, match="found no pose"):
         verify(machine, [])
