@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from importlib import import_module
-from math import cos, pi, sin
+from math import cos, pi, radians, sin
 from types import ModuleType
 from typing import TypeAlias
 
@@ -41,7 +41,7 @@ def model(name: str, length: float) -> Iterator[ModuleType]:
         gmsh.option.setNumber("General.NumThreads", 1)
         gmsh.option.setNumber("Mesh.MeshSizeMax", length)
         gmsh.option.setNumber("Mesh.MeshSizeMin", 0.3 * length)
-        gmsh.option.setNumber("Mesh.MeshSizeFromCurvature", 20)
+        gmsh.option.setNumber("Mesh.MeshSizeFromCurvature", 14)
         gmsh.option.setNumber("Mesh.MeshSizeExtendFromBoundary", 0)
         gmsh.model.add(name)
         yield gmsh
@@ -70,6 +70,13 @@ def mesh(gmsh: ModuleType) -> SolidMesh:
 def box(gmsh: ModuleType, x: Sequence[float], y: Sequence[float], z: Sequence[float]) -> Entity:
     """A block from .. to along x, y and z."""
     return 3, gmsh.model.occ.addBox(x[0], y[0], z[0], x[1] - x[0], y[1] - y[0], z[1] - z[0])
+
+
+def turned_box(gmsh: ModuleType, degrees: float, *sides: Sequence[float]) -> Entity:
+    """A block from .. to along x, y and z, then turned about the z axis."""
+    block = box(gmsh, *sides)
+    gmsh.model.occ.rotate([block], 0, 0, 0, 0, 0, 1, radians(degrees))
+    return block
 
 
 def cylinder(gmsh: ModuleType, axis: str, radius: float, along: Sequence[float]) -> Entity:

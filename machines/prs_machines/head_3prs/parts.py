@@ -15,7 +15,21 @@ import numpy as np
 
 from prs_model.arrays import BoolArray, FloatArray
 
-from .gmsh_solids import Entity, box, cut, cylinder, join, keep_half, keep_sixth, mesh, model, only, prism, ring
+from .gmsh_solids import (
+    Entity,
+    box,
+    cut,
+    cylinder,
+    join,
+    keep_half,
+    keep_sixth,
+    mesh,
+    model,
+    only,
+    prism,
+    ring,
+    turned_box,
+)
 from .solid_mesh import SolidMesh, Where, merged, mirrored, rotated, turned
 
 LIMB_ANGLES = (-90.0, 30.0, 150.0)  # degrees; limb 1 points to -y
@@ -85,22 +99,23 @@ def base(size: float = 1.0) -> SolidMesh:
     inner = RAIL_RADIUS + SEAT
     low, high = RAILS
     rear, front = low - 60, high + 20
-    with model("base", 56 * size) as gmsh:
+    with model("base", 92 * size) as gmsh:
         column = [
             box(gmsh, (inner, inner + 8), (60, 100), (low, high)),  # bolted strip
-            box(gmsh, (inner + 4, inner + 17), (-112, 112), (rear, front)),  # face of the column
-            box(gmsh, (inner + 12, 540), (72, 88), (rear, front)),  # side wall
-            box(gmsh, (0, 544), (-9, 9), (rear, low - 5)),  # rib on the rear plate
-            box(gmsh, (inner + 12, 540), (-9, 9), (rear, low + 120)),  # middle wall
-            box(gmsh, (0, 544), (-28, 28), (10, rear + 5)),  # radial wall that carries the drum
+            box(gmsh, (inner + 4, inner + 12), (-112, 112), (rear, front)),  # face of the column
+            box(gmsh, (inner + 10, 540), (75, 85), (rear, front)),  # side wall
+            box(gmsh, (0, 544), (-18, 18), (rear, low - 5)),  # rib on the rear plate
+            box(gmsh, (inner + 10, 540), (-9, 9), (rear, low + 120)),  # middle wall
+            box(gmsh, (0, 544), (-25, 25), (10, rear + 5)),  # radial wall that carries the drum
             box(gmsh, (0, 556), (-60, 60), (0, 20)),  # foot
+            turned_box(gmsh, 60, (240, 544), (-16, 16), (5, rear + 5)),  # radial wall between two limbs
         ]
         drum = [
-            ring(gmsh, (540, 546), (rear, front)),  # shell
-            ring(gmsh, (395, 544), (front - 12, front)),  # front plate
-            ring(gmsh, (150, 544), (rear, rear + 14)),  # rear plate
+            ring(gmsh, (534, 546), (rear, front)),  # shell
+            ring(gmsh, (400, 544), (front - 9, front)),  # front plate
+            ring(gmsh, (150, 544), (rear, rear + 28)),  # rear plate
             ring(gmsh, (290, 304), (rear - 45, rear + 5)),  # stiffener under it
-            cylinder(gmsh, "z", 60, (0, rear + 14)),  # hub
+            cylinder(gmsh, "z", 60, (0, rear + 28)),  # hub
             ring(gmsh, (500, 546), (0, 10)),  # foot ring
         ]
         keep_sixth(gmsh, join(gmsh, column + drum))
@@ -117,11 +132,11 @@ def board(size: float = 1.0) -> SolidMesh:
     divides 25 mm, so that contacts 100 mm apart take hold of congruent facets.
     """
     outline = [
-        (104, 0), (104, 68.5), (CONTACT, 68.5), (CONTACT, 91.5), (104, 91.5), (104, 115),
+        (112, 0), (112, 68.5), (CONTACT, 68.5), (CONTACT, 91.5), (112, 91.5), (112, 115),
         (130, 115), (130, 100), (SEAT, 100), (SEAT, 60), (130, 60), (130, 0),
     ]  # fmt: skip
     layers = 24 * 2 ** max(0, round(log2(2 / size)))
-    with model("board", 17 * size) as gmsh:
+    with model("board", 30 * size) as gmsh:
         occ = gmsh.model.occ
         corners = [occ.addPoint(x, y, RAILS[0]) for x, y in outline]
         lines = [occ.addLine(a, b) for a, b in zip(corners, corners[1:] + corners[:1], strict=True)]
@@ -145,7 +160,7 @@ def slider(size: float = 1.0) -> SolidMesh:
     """
     half_width, half_length = CARRIAGE_HALF
     y = (CARRIAGE_Y - half_width, CARRIAGE_Y + half_width)
-    with model("slider", 13.5 * size) as gmsh:
+    with model("slider", 20 * size) as gmsh:
         blocks = [box(gmsh, (60, CONTACT), y, (z - half_length, z + half_length)) for z in (-CARRIAGE_Z, CARRIAGE_Z)]
         lug = [
             box(gmsh, (0, 45), BEARING_SPAN, (-38, 38)),
@@ -175,8 +190,8 @@ def rod(size: float = 1.0) -> SolidMesh:
 
     Steel. Frame `rod_i`. Surfaces: `b1` (y < 0), `b2` and `tip`.
     """
-    with model("rod", 14 * size) as gmsh:
-        bar = _tapered_bar(gmsh, (44, 338), ((13.5, 54), (12, 24)))
+    with model("rod", 24 * size) as gmsh:
+        bar = _tapered_bar(gmsh, (44, 338), ((8.5, 74), (7.5, 25)))
         neck = box(gmsh, (-20, 20), (-43, 43), (0, 60))  # passes between the slider's lugs
         hub = [
             cylinder(gmsh, "y", 34, (-43, 43)),
@@ -204,13 +219,16 @@ def platform(size: float = 1.0) -> SolidMesh:
     Steel throughout (the spindle's rotor and stator counted as solid). Frame `platform`. Surfaces: `socket_1` ..
     `socket_3` and `tool`.
     """
-    with model("platform", 22 * size) as gmsh:
+    with model("platform", 35 * size) as gmsh:
         solids = [
-            cylinder(gmsh, "z", 115, (-122, 118)),  # spindle
-            cylinder(gmsh, "z", 42, (118, 285)),  # nose
-            cylinder(gmsh, "z", 30, (285, TOOL_HEIGHT)),  # tool holder
-            cylinder(gmsh, "z", 142, (2, 64)),  # hub
-            box(gmsh, (60, 197), (-32, 32), (0, 46)),  # arm
+            ring(gmsh, (101, 112), (-60, 20)),  # housing of the spindle, behind the plate
+            cylinder(gmsh, "z", 112, (-166, -55)),  # the spindle's motor
+            cylinder(gmsh, "z", 172, (19, 31)),  # plate
+            ring(gmsh, (168, 210), (10, 40)),  # rim
+            box(gmsh, (40, 205), (-34, 34), (0, 46)),  # arm with the socket
+            cylinder(gmsh, "z", 50, (12, 100)),  # bearing seat
+            cylinder(gmsh, "z", 31, (90, 285)),  # nose
+            cylinder(gmsh, "z", 20, (285, TOOL_HEIGHT)),  # tool holder
         ]
         ball = (3, gmsh.model.occ.addSphere(SOCKET_RADIUS, 0, 0, BALL_RADIUS))
         keep_sixth(gmsh, cut(gmsh, [join(gmsh, solids)], [ball]))
