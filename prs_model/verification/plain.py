@@ -50,6 +50,7 @@ def _reduced(report: VerificationReport, run: ModelRun) -> dict[str, Any]:
         "against": run.own,
         "least_margin": report.least_margin(run),
         "least_margin_in_place": report.least_margin_in_place(run),
+        "in_place_hz": None if run.in_place is None else run.in_place.tolist(),
         "in_curve": run.name in report.curve,
     }
 

@@ -70,9 +70,9 @@ def _reductions(report: VerificationReport) -> Table:
     rows = tuple(_reduction(report, run) for run in report.shown)
     note = (
         "'parts' is reading or reducing all parts. 'ratio' is the complete model's time of a further pose over the "
-        "reduction's. 'against' names the complete model with the same interface kinematics. A reduced frequency cannot "
-        "lie below that model's, in the order of frequencies, but for round-off and for travelling contacts between "
-        "stations; 'in place' is with these contacts reduced where they are (--bounds)."
+        "reduction's. 'against' names the complete model with the same interface kinematics. A reduced frequency "
+        "cannot lie below that model's, in the order of frequencies, but for round-off and for travelling contacts "
+        "between stations; 'in place' is with these contacts reduced where they are (--bounds)."
     )
     return Table("Reductions", header, rows, note)
 
