@@ -54,6 +54,16 @@ class Joined:
             for (name, part), force in zip(self.bodies.items(), forces, strict=True)
         }
 
+    def energy(self, shapes: Shapes) -> FloatArray:
+        """u^T A u (c,) of shapes that obey the rigid joints."""
+        motions = np.vstack([part.outputs @ shapes[name] for name, part in self.bodies.items()])
+        independent = np.linalg.lstsq(self.expansion, motions, rcond=None)[0]
+        energy = np.einsum("ic,ij,jc->c", independent, self.springs, independent, optimize=True)
+        for name, part in self.bodies.items():
+            own = shapes[name]
+            energy += np.einsum("ic,ic->c", own, part.model.stiffness @ own - part.shift * (part.model.mass @ own))
+        return np.asarray(energy)
+
     def _forces(self, motions: FloatArray) -> FloatArray:
         """f (6 k, c) of the joints on the nodes, that would move by `motions` without them."""
         scale, saddle = self._saddle

@@ -25,7 +25,7 @@ from .part import CompletePart, shifted, tied_part
 from .subspace import Subspace, response_space
 
 SLOW = 1e-2  # the shift's share of the joints' stiffness over the machine's mass
-DEPTH = 3  # blocks of responses in the first subspaces
+DEPTH = 4  # blocks of responses in the first subspaces
 SAME = 9  # decimals of a joint value [m] up to which two contacts are at one place
 
 logger = logging.getLogger("prs_model")

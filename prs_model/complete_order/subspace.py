@@ -18,6 +18,7 @@ from .part import CompletePart
 
 NEW = 1e-12  # of a motion's energy: below, what is left when all known motions are taken out of it is round-off
 APART = 1e-8  # of the energy of new motions: below, a combination of them is nothing of its own
+LIGHT = 1e-2  # of the most mass for the same energy: what has less is not followed further
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,8 +66,14 @@ def response_space(part: CompletePart, depth: int) -> Subspace:
         known = space.size
         space = enlarged(space, shapes)
         if level + 1 < depth:
-            shapes = part.solve(part.model.mass @ space.vectors[:, known:])
+            shapes = part.solve(part.model.mass @ _slow(space, known))
     return space
+
+
+def _slow(space: Subspace, known: int) -> FloatArray:
+    """Of the motions beyond those known, combinations with much mass for their energy: the others hardly respond."""
+    share, turn = eigh(space.mass[known:, known:])
+    return np.asarray(space.vectors[:, known:] @ turn[:, share > LIGHT * share[-1]])
 
 
 def enlarged(space: Subspace, shapes: FloatArray) -> Subspace:
