@@ -12,14 +12,17 @@ STEEL = {"E": E, "nu": NU, "density": DENSITY}
 G, KAPPA = E / 2.6, 10.0 * (1.0 + NU) / (12.0 + 11.0 * NU)
 
 # the drawing: machines/prs_machines/head_3prs/parts.py, in mm; z runs from the R joint to the S joint
-NECK, SHOULDER, BALL, TIP = (40.0, 86.0), 60.0, 26.0, 350.0
+NECK, SHOULDER, WIDE, BALL, TIP = (40.0, 86.0), 44.0, 100.0, 26.0, 350.0
 END = TIP - BALL  # the ball's surface is held, so nothing bends inside it
 
 
 def sides(z):
-    """Sides of the rod's section along x and y: the neck, then a bar that tapers from z = 44 to 338."""
-    share = (z - 44.0) / 294.0
-    return NECK if z < SHOULDER else (27.0 - 3.0 * share, 108.0 - 60.0 * share)
+    """Sides of the rod's section along x and y: the neck, then a flat bar that widens up to z = 100, then tapers.
+
+    The neck goes on to z = 60, but bears little of a bar less than half as thick: that piece is a mass only.
+    """
+    bar = np.interp(z, (44.0, WIDE, 338.0), (16.8, 16.4, 14.8)), np.interp(z, (44.0, WIDE, 338.0), (86.0, 140.0, 50.0))
+    return NECK if z < SHOULDER else (float(bar[0]), float(bar[1]))
 
 
 def box(x, y, length, z):
@@ -63,6 +66,12 @@ def inside_hub():
     return -mass, z, -inertia
 
 
+def collar():
+    """The neck round the bar, from z = 44 to 60, but for the bar inside it."""
+    x, y = sides(52.0)
+    return box(NECK[0] - x, min(NECK[1], y), 16.0, 52.0)
+
+
 def beam_rod():
     """Neck and tapered bar as beams; the hub and the ball are masses, the ball's radius is rigid."""
 
@@ -70,25 +79,31 @@ def beam_rod():
         return {"kind": "rectangle", "y": sides(z)[0], "z": sides(z)[1], "material": STEEL}
 
     options = {
-        "nodes": {"hinge": [0, 0, 0], "shoulder": [0, 0, SHOULDER], "tip": [0, 0, TIP]},
-        "sections": {"neck": rectangle(0.0), "thick": rectangle(SHOULDER), "thin": rectangle(END)},
+        "nodes": {"hinge": [0, 0, 0], "shoulder": [0, 0, SHOULDER], "wide": [0, 0, WIDE], "tip": [0, 0, TIP]},
+        "sections": {
+            "neck": rectangle(0.0),
+            "low": rectangle(SHOULDER),
+            "wide": rectangle(WIDE),
+            "thin": rectangle(END),
+        },
         "members": [
             {"between": ["hinge", "shoulder"], "section": "neck", "up": [0, 1, 0]},
+            {"between": ["shoulder", "wide"], "section": "low", "taper_to": "wide", "up": [0, 1, 0], "elements": 4},
             {
-                "between": ["shoulder", "tip"],
-                "section": "thick",
+                "between": ["wide", "tip"],
+                "section": "wide",
                 "taper_to": "thin",
                 "up": [0, 1, 0],
                 "offsets": [[0, 0, 0], [0, 0, -BALL]],
                 "elements": 16,
             },
         ],
-        "masses": {"hinge": together(hub(inside_hub())), "tip": together([ball()])},
+        "masses": {"hinge": together(hub(inside_hub(), collar())), "tip": together([ball()])},
     }
     return rod(reducer="beam", options=options, interfaces={"hinge": {"node": "hinge"}, "tip": {"node": "tip"}})
 
 
-def lumped_rod(pieces=6):
+def lumped_rod(pieces=15):
     """Slices of the rod on the ends of equal pieces; between two, a spring with a piece's stiffness at its middle.
 
     There a spring needs no terms off the diagonal: EI/h against bending, GJ/h against torsion, EA/h along the axis and
@@ -139,14 +154,14 @@ def rod(**entries):
 
 EXPLAINED = """
 exported  the same matrices, to the digits of the file
-beam      up to 0.6 % stiffer: plane sections, and a hub that is rigid. What matters is where the neck is clamped in the
-          hub: in its middle, as here; clamped at its surface the first frequency would be 4.5 % too high
-lumped    six pieces, each as stiff as a beam of the section in its middle. Their coarse masses would show in the rod's
-          own modes (from 750 Hz), of which the head's first eight have little"""
+beam      up to 1.5 % stiffer: plane sections in a wide, short bar, and a hub that is rigid. What matters is where the
+          neck is clamped in the hub (in its middle, as here) and where it ends (where the bar begins)
+lumped    fifteen pieces, each as stiff as a beam of the section in its middle; with fewer, the step from neck to bar
+          would be lost"""
 
 
 def main():
-    head = prs.load_machine("head_3prs")
+    head = prs.load_machine("head_3prs").replace({"reduction.method": "craig-bampton"})
     solid = head.parts["rod_1"]
     with TemporaryDirectory() as folder:
         ways = {"exported": exported_rod(solid, Path(folder) / "rod.op4"), "beam": beam_rod(), "lumped": lumped_rod()}

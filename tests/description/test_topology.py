@@ -116,7 +116,7 @@ WRONG: dict[str, tuple[str, dict[str, Any], dict[str, str]]] = {
     ),
     "member of an interface with one node": (
         "head_3prs",
-        {"joints.R.between": ["slider_<limb>.hinge.b1", "rod_<limb>.hinge"]},
+        {"joints.R.between": ["slider_<limb>.hinge.b1", "rod_<limb>.hinge"], "reduction.method": "craig-bampton"},
         {"joints.R.between[0]": "'hinge' has one node for all its members: name 'hinge', or give it 'tie: interface'"},
     ),
     "output at a node for all members": (
