@@ -26,7 +26,7 @@ logger = logging.getLogger("prs_model")
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """shapes of every body, mass-normalised over all; relative residuals (c,) of squared frequencies; iterations taken."""
+    """shapes of every body, mass-normalised over all; residuals (c,) of squared frequencies, relative; iterations."""
 
     shapes: Shapes
     residuals: FloatArray
