@@ -128,8 +128,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--size", type=float, default=1.0, help="factor on element lengths (1 is the shipped size)")
     parser.add_argument("--only", nargs="+", choices=list(PARTS), default=list(PARTS), help="parts to rebuild")
     chosen = parser.parse_args(arguments)
-    if not 0.5 <= chosen.size <= 4.0:
-        parser.error(f"--size: found {chosen.size:g}, expected a factor from 0.5 to 4")
+    if not 0.5 <= chosen.size <= 2.5:
+        parser.error(f"--size: found {chosen.size:g}, expected a factor from 0.5 to 2.5")
     logging.basicConfig(level=logging.INFO, format="%(message)s", stream=sys.stderr)
     try:
         rebuild(chosen.only, chosen.size)
