@@ -57,12 +57,18 @@ class Stock:
         shift = self._shift_for(configuration)
         if moved is None:
             if stem not in self._spaces:
-                self._spaces[stem] = response_space(self._part(name, STILL, shift), DEPTH)
+                self._spaces[stem] = self._started(stem, self._part(name, STILL, shift))
             return self._spaces[stem]
         key = stem, moved.tobytes()
         if key not in here:
-            here[key] = response_space(self._part(name, moved, shift), DEPTH)
+            here[key] = self._started(name, self._part(name, moved, shift))
         return here[key]
+
+    @staticmethod
+    def _started(name: str, part: CompletePart) -> Subspace:
+        space = response_space(part, DEPTH)
+        logger.info("%s: factorized, %d interface nodes, %d motions to start from", name, len(part.ties), space.size)
+        return space
 
     def _part(self, name: str, moved: FloatArray, shift: float) -> CompletePart:
         """The part of a body, its travelling contact moved by `moved` (3,) [m]."""
