@@ -8,6 +8,7 @@ from .check_names import check_names
 from .check_task import check_task
 from .check_topology import check_topology
 from .check_travel import check_travel
+from .problems import not_known
 from .subject import Subject
 
 
@@ -35,10 +36,18 @@ def check_closures(subject: Subject) -> None:
 
 
 def check_damping(subject: Subject) -> None:
-    """Damping is modal or Rayleigh's."""
+    """Damping is modal or Rayleigh's, and that of joints is of joints that there are, and is some."""
     damping = subject.file.damping
     if damping.modal is not None and damping.rayleigh is not None:
         subject.problems.add(("damping",), "found modal and rayleigh, expected one of the two; keep one")
+    instances = [name for _, name, _ in subject.each_joint()]
+    known = dict.fromkeys([*subject.file.joints, *(subject.origins.get(name, name) for name in instances), *instances])
+    for name, joint in damping.joints.items():
+        place = ("damping", "joints", name)
+        if name not in known:
+            subject.problems.add(place, not_known("a joint", name, known))
+        elif joint.viscous is None and joint.loss_factor is None:
+            subject.problems.add(place, "found nothing, expected 'viscous' [s] or 'loss_factor'; add one")
 
 
 def check_output(subject: Subject) -> None:

@@ -75,7 +75,7 @@ def described(
     file = _validated(raw, problems)
     urdf, urdf_problems = _urdf(path.parent, raw, problems)
     if file is not None:
-        subject = Subject(path.parent, raw, file, urdf, expanded(file.bodies, file.symmetry), problems)
+        subject = Subject(path.parent, raw, file, urdf, expanded(file.bodies, file.symmetry), problems, origins)
         check(subject)
     problems.raise_if_any(urdf_problems)
     if file is None or urdf is None:

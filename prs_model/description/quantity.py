@@ -106,6 +106,7 @@ def _unpack(raw: Any, unit: str) -> tuple[Any, Source | None, str | None]:
 
 Number = Annotated[Quantity, _Field(Dimension())]
 DampingRatio = Annotated[Quantity, _Field(Dimension(), non_negative=True, below=1.0)]
+LossFactor = Annotated[Quantity, _Field(Dimension(), non_negative=True, below=2.0)]
 Tolerance = Annotated[Quantity, _Field(Dimension(), non_negative=True, below=1.0)]
 Frequency = Annotated[Quantity, _Field(Dimension(time=-1), positive=True)]
 Rate = Annotated[Quantity, _Field(Dimension(time=-1), non_negative=True)]

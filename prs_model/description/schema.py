@@ -25,6 +25,7 @@ from .quantity import (
     Force,
     Frequency,
     Length,
+    LossFactor,
     Mass,
     Number,
     PositiveLength,
@@ -248,11 +249,33 @@ class Rayleigh(Section):
     beta: Duration
 
 
-class Damping(Section):
-    """One modal damping ratio for all modes, or Rayleigh's two constants."""
+class JointDamping(Section):
+    """A joint of stiffness K_j damps: C_j = viscous K_j [s], or K_j (1 + j loss_factor) at any frequency; both add."""
 
-    modal: DampingRatio | None = None
+    viscous: Duration | None = None
+    loss_factor: LossFactor | None = None
+
+
+def _one_or_several(raw: Any) -> str:
+    return "several" if isinstance(raw, list | tuple) else "one"
+
+
+ModalRatios = Annotated[
+    Annotated[DampingRatio, Tag("one")] | Annotated[tuple[DampingRatio, ...], Field(min_length=1), Tag("several")],
+    Discriminator(_one_or_several),
+]
+
+
+class Damping(Section):
+    """Damping ratios of the modes, or Rayleigh's two constants; and what joints add to that.
+
+    modal: one ratio for all modes, or one for each; further modes have the last one. joints: by their names, or by
+    those of their instances.
+    """
+
+    modal: ModalRatios | None = None
     rayleigh: Rayleigh | None = None
+    joints: dict[str, JointDamping] = Field(default_factory=dict)
 
 
 class Verification(Section):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +18,10 @@ from .urdf import Urdf
 
 @dataclass(frozen=True)
 class Subject:
-    """`urdf` is None where the URDF is not usable; what needs it is then left unchecked."""
+    """`urdf` is None where the URDF is not usable; what needs it is then left unchecked.
+
+    `origins` names the entry that one written for an instance alone was split from.
+    """
 
     folder: Path
     raw: Mapping[str, Any]
@@ -26,6 +29,7 @@ class Subject:
     urdf: Urdf | None
     bodies: Mapping[str, Body]
     problems: Problems
+    origins: Mapping[str, str] = field(default_factory=dict)
 
     def each_joint(self) -> Iterator[tuple[Place, str, Joint]]:
         """Every instance of every joint: the place of its entry, its own name, and itself."""

@@ -25,7 +25,7 @@ def lowest_modes(
     free or partly free structure. Each shape's largest entry is positive.
     Raises PrsError when a direction has neither mass nor stiffness, or K is indefinite; `labels` name the coordinates.
     """
-    shift, pencil = _positive_definite(mass, stiffness, labels)
+    shift, pencil = positive_definite_pencil(mass, stiffness, labels)
     scale = 1.0 / np.sqrt(np.diag(pencil))
     scaling = np.outer(scale, scale)
     mu, vectors = _largest(mass * scaling, pencil * scaling, count)
@@ -54,10 +54,13 @@ def slowest_rate(mass: FloatArray, stiffness: FloatArray) -> float:
     return float(held.min()) if held.size else 1.0
 
 
-def _positive_definite(
-    mass: FloatArray, stiffness: FloatArray, labels: Sequence[object] | None
+def positive_definite_pencil(
+    mass: FloatArray, stiffness: FloatArray, labels: Sequence[object] | None = None
 ) -> tuple[float, FloatArray]:
-    """The shift s and the positive definite K - s M."""
+    """The shift s [rad^2/s^2] and the positive definite K - s M; s is 0 for a structure that is held, else below it.
+
+    Raises PrsError when a direction has neither mass nor stiffness, or K is indefinite; `labels` name the coordinates.
+    """
     if _is_positive_definite(stiffness):
         return 0.0, stiffness
     shift = -1e-3 * slowest_rate(mass, stiffness)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,7 +12,15 @@ from ..arrays import BoolArray, FloatArray
 from ..errors import PrsError
 from ..linear_algebra import lowest_modes, slowest_rate
 from ..synthesis.system import System
+from . import energy
 from .character import Character, characters
+
+if TYPE_CHECKING:
+    import xarray
+    from numpy.typing import ArrayLike
+
+    from ..response import DampingLike, FrequencyResponse, Response, StateSpace, WeakMode
+    from ..response.quantity import ComplexArray
 
 _RIGID = 1e-8
 
@@ -49,27 +57,112 @@ class Modes:
 
     def kinetic_energy(self) -> dict[str, FloatArray]:
         """Share (k,) of each mode's kinetic energy in each body; the shares of a mode sum to one (eq. 22)."""
-        return _shares({name: _quadratic(self.body_shapes(name), e.mass) for name, e in self.system.elements.items()})
+        return energy.kinetic_energy(self)
 
     def strain_energy(self) -> dict[str, FloatArray]:
         """Share (k,) of each mode's strain energy in each body and each joint; the shares of a mode sum to one.
 
-        Rigid-body modes have none: their shares are zero.
+        Rigid-body modes have none: their shares are zero. A joint of the same name as a body is called ``joint ..``.
         """
-        bodies = {name: _quadratic(self.body_shapes(name), e.stiffness) for name, e in self.system.elements.items()}
-        energy = bodies | self._joint_energy()
-        return _shares({name: np.where(self.is_rigid, 0.0, part) for name, part in energy.items()})
+        return energy.strain_energy(self)
+
+    def kinetic_energy_by_limb(self) -> dict[str, FloatArray]:
+        """Share (k,) of each mode's kinetic energy in each limb, and in each body that is in none."""
+        return energy.by_limb(energy.kinetic_energy(self), self.system.limbs)
+
+    def strain_energy_by_limb(self) -> dict[str, FloatArray]:
+        """Share (k,) of each mode's strain energy in each limb, its joints included, and in what is in none."""
+        return energy.by_limb(energy.strain_energy(self), self.system.limbs)
+
+    def joint_strain_by_direction(self) -> dict[str, FloatArray]:
+        """Share (6, k) of each mode's strain energy in each joint, along and about x, y, z of the joint's frame.
+
+        A joint's six sum to its share; where its stiffness couples directions, one may be negative.
+        """
+        return energy.joint_strain_by_direction(self)
+
+    def frf(
+        self,
+        frequencies_hz: ArrayLike,
+        damping: DampingLike = None,
+        to: str | None = None,
+        at: str | None = None,
+        quantity: Response = "receptance",
+        static_correction: bool = True,
+    ) -> ComplexArray:
+        """(f, 6, 6): motion along and about u, v, w at node `to` for unit forces and moments at node `at`, eq. (18-20).
+
+        damping: a ratio, one for each mode, or entries of machine.yaml's `damping` in SI, such as
+        ``{"joints": {"P": {"loss_factor": 0.03}}}``; None is the machine's own. Nodes are ``body.node``, read in the
+        axes of the output frame; default: the end-reference point.
+        quantity: displacement (receptance), velocity (mobility) or acceleration (accelerance) per force.
+        static_correction: add what the modes left out do at rest. With all modes the result is that of System.frf.
+        Raises PrsError for frequencies not above zero, unknown nodes, or wrong damping.
+        """
+        return self.frequency_response(frequencies_hz, damping, to, at, quantity, static_correction).values
+
+    def frequency_response(
+        self,
+        frequencies_hz: ArrayLike,
+        damping: DampingLike = None,
+        to: str | None = None,
+        at: str | None = None,
+        quantity: Response = "receptance",
+        static_correction: bool = True,
+    ) -> FrequencyResponse:
+        """`frf` with its labels and units, to be saved or drawn."""
+        from ..response.frequency_response import of_modes
+
+        return of_modes(self, frequencies_hz, damping, to, at, quantity, static_correction)
+
+    def static_compliance(self, to: str | None = None, at: str | None = None) -> FloatArray:
+        """(6, 6) of the system, exact whatever the number of modes; see System.static_compliance."""
+        return self.system.static_compliance(to, at)
+
+    def modal_flexibility(self) -> FloatArray:
+        """(k, 6) [m/N, rad/(N m)]: what each mode gives to the compliance of the end-reference point, eq. (20)."""
+        from ..response.flexibility import modal_flexibility
+
+        return modal_flexibility(self)
+
+    def flexibility_shares(self) -> FloatArray:
+        """(k, 6): `modal_flexibility` over the static compliance by a solve, eq. (21)."""
+        from ..response.flexibility import flexibility_shares
+
+        return flexibility_shares(self)
+
+    def weak_modes(self) -> tuple[WeakMode, ...]:
+        """The modes that give most of the compliance, direction by direction, with the reason in words."""
+        from ..response.flexibility import weak_modes
+
+        return weak_modes(self)
+
+    def state_space(
+        self,
+        damping: DampingLike = None,
+        to: str | None = None,
+        at: str | None = None,
+        quantity: Response = "receptance",
+        static_correction: bool = True,
+    ) -> StateSpace:
+        """x' = A x + B f, y = C x + D f with x = (q, q') of these modes; nodes and damping as in `frf`.
+
+        static_correction: D of a receptance is what the modes left out do at rest. Raises PrsError for loss factors,
+        which have no model in time.
+        """
+        from ..response.state_space import state_space
+
+        return state_space(self, damping, to, at, quantity, static_correction)
+
+    def table(self) -> xarray.Dataset:
+        """Frequencies, characters, energies and flexibilities by mode, with names and units."""
+        from .labelled import table
+
+        return table(self)
 
     def characters(self) -> tuple[Character, ...]:
         """What moves in each mode, and along or about what."""
         return characters(self.system, self.shapes)
-
-    def _joint_energy(self) -> dict[str, FloatArray]:
-        energy: dict[str, FloatArray] = {}
-        for spring in self.system.springs:
-            strain = spring.displacement @ (self.system.expansion[spring.rows] @ self.shapes)
-            energy[spring.joint] = energy.get(spring.joint, 0.0) + _quadratic(strain, spring.stiffness)
-        return energy
 
 
 def modes_of(system: System, count: int) -> Modes:
@@ -83,13 +176,3 @@ def check_count(count: object) -> None:
     """Raises PrsError when so many modes cannot be asked for."""
     if not isinstance(count, int | np.integer) or isinstance(count, bool) or count < 1:
         raise PrsError(f"found {count!r} modes asked for, expected a whole number above zero")
-
-
-def _quadratic(shapes: FloatArray, matrix: FloatArray) -> FloatArray:
-    return np.asarray(np.einsum("ik,ij,jk->k", shapes, matrix, shapes, optimize=True))
-
-
-def _shares(energy: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
-    total = np.asarray(sum(energy.values()))
-    positive = total > 0
-    return {name: np.where(positive, part / np.where(positive, total, 1.0), 0.0) for name, part in energy.items()}

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..description import MachineDescription
+from ..description.limbs import limbs_of
 from ..errors import PrsError
 from ..joints import ElasticJoint, Spring
 from ..kinematics import Configuration
@@ -29,7 +30,7 @@ def assemble(
     Rigid joint directions are eliminated exactly; coordinates with neither stiffness nor mass are left out.
     Raises PrsError when the joints leave no coordinate free.
     """
-    ends = _ends(description, parts, configuration)
+    ends = ends_of(description, parts, configuration)
     springs = [
         spring for joint in joints for spring in joint.springs(configuration.joint_values, configuration.placement)
     ]
@@ -53,6 +54,7 @@ def assemble(
         placements=ends.placements,
         configuration=configuration,
         stems=description.stems,
+        limbs=limbs_of(description),
         damping_model=description.file.damping,
     )
 
@@ -65,7 +67,7 @@ def wide_joints(
     share: float = 0.01,
 ) -> dict[str, float]:
     """Joints whose two ends lie further apart [m] than `share` of the machine's size, which is seldom meant."""
-    ends = _ends(description, parts, configuration)
+    ends = ends_of(description, parts, configuration)
     points = np.vstack([ends.placements[name].act(r) for name, e in ends.elements.items() for r in e.positions])
     size = float(np.max(np.ptp(points.reshape(-1, 3), axis=0)))
     gaps: dict[str, float] = {}
@@ -75,11 +77,12 @@ def wide_joints(
     return {name: gap for name, gap in gaps.items() if gap > share * size}
 
 
-def _ends(
+def ends_of(
     description: MachineDescription,
     parts: Mapping[str, SuperElement | TravellingElement],
     configuration: Configuration,
 ) -> Ends:
+    """The bodies in a configuration, for reading the motions of joint ends."""
     elements = {name: _at(part, configuration) for name, part in parts.items()}
     placements = {name: configuration.placement(body.frame) for name, body in description.bodies.items()}
     return Ends(elements, _blocks(elements), placements)

@@ -47,11 +47,12 @@ class Ends:
 
     def gap(self, spring: Spring) -> float:
         """Distance [m] between the nodes at which the spring's ends are read; of a grounded one, from its place."""
-        points = [self._node_place(end, spring.interface) for end in spring.between if end != "ground"]
+        points = [self.position(end, spring.interface) for end in spring.between if end != "ground"]
         other = points[1] if len(points) == 2 else np.asarray(spring.placement.translation)
         return float(np.linalg.norm(points[0] - other))
 
-    def _node_place(self, end: str, interface: str | None) -> FloatArray:
+    def position(self, end: str, interface: str | None = None) -> FloatArray:
+        """Where the node stands at which an end is read (3,) [m], in the world."""
         body = end.split(".", 1)[0]
         element = self.elements[body]
         middle = np.mean([element.positions[k] for k in self.nodes(end, interface)], axis=0)

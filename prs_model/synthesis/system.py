@@ -7,16 +7,20 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
-import numpy as np
 import pinocchio as pin
 
 from ..arrays import FloatArray, IntArray
 from ..description.schema import Damping
 from ..kinematics import Configuration
 from ..reduction import SuperElement
+from .ends import Ends
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
     from ..modes import Modes
+    from ..response import ComplexModes, DampingLike, FrequencyResponse, Response, StateSpace
+    from ..response.quantity import ComplexArray
 
 
 class Coordinate(NamedTuple):
@@ -45,7 +49,7 @@ class System:
     `expansion` (N, n) gives all N body coordinates from the n independent ones; it is the identity where no joint
     is rigid. `blocks` are the rows of each body among the N. `output` (6, n) reads the end-reference point, a node of
     `output_body`, in the axes of the output frame; `output_placement` is where it stands in the world, `placements`
-    where the bodies do.
+    where the bodies do. `stems` names the kind of each body and joint, `limbs` the limb of those that are in one.
     """
 
     mass: FloatArray
@@ -61,6 +65,7 @@ class System:
     placements: Mapping[str, pin.SE3]
     configuration: Configuration
     stems: Mapping[str, str]
+    limbs: Mapping[str, str]
     damping_model: Damping
 
     def __post_init__(self) -> None:
@@ -77,18 +82,84 @@ class System:
 
     @cached_property
     def damping(self) -> FloatArray:
-        """C (n, n) [N s/m and so on]: Rayleigh's alpha M + beta K, or M Phi diag(2 xi omega) Phi^T M over all modes."""
-        if self.damping_model.rayleigh is not None:
-            rayleigh = self.damping_model.rayleigh
-            return np.asarray(rayleigh.alpha * self.mass + rayleigh.beta * self.stiffness)
-        ratio = self.damping_model.modal or 0.0
-        modes = self.modes(self.size)
-        omega = 2.0 * np.pi * modes.frequencies
-        momentum = self.mass @ modes.shapes
-        return np.asarray((momentum * (2.0 * ratio * omega)) @ momentum.T)
+        """C (n, n) [N s/m and so on]: alpha M + beta K, or M Phi diag(2 xi omega) Phi^T M over all modes; and tau_j K_j
+        of joints with a time constant tau_j. Loss factors are in `loss_stiffness`."""
+        from ..response.damping import viscous_matrix
+
+        return viscous_matrix(self, self.damping_model)
+
+    @cached_property
+    def loss_stiffness(self) -> FloatArray:
+        """H (n, n) [N/m and so on]: sum eta_j K_j over joints with a loss factor eta_j; the stiffness is K + j H."""
+        from ..response.damping import loss_joints
+
+        return loss_joints(self, self.damping_model)
+
+    @property
+    def ends(self) -> Ends:
+        """Reads the motion of any node."""
+        return Ends(self.elements, self.blocks, self.placements)
 
     def modes(self, count: int = 8) -> Modes:
         """The lowest `count` natural modes (fewer where the mass matrix has a lower rank)."""
         from ..modes import modes_of
 
         return modes_of(self, count)
+
+    def complex_modes(self, count: int = 8, damping: DampingLike = None) -> ComplexModes:
+        """The `count` slowest motions psi e^(s t) under damping: frequencies, damping ratios, complex shapes.
+
+        damping: as in `frf`. Directions without mass take no part; what does not oscillate is left out.
+        """
+        from ..modes.modes import check_count
+        from ..response.complex_modes import complex_modes
+        from ..response.damping import damping_of
+
+        check_count(count)
+        return complex_modes(self, count, damping_of(self, damping))
+
+    def frf(
+        self,
+        frequencies_hz: ArrayLike,
+        damping: DampingLike = None,
+        to: str | None = None,
+        at: str | None = None,
+        quantity: Response = "receptance",
+    ) -> ComplexArray:
+        """(f, 6, 6) as Modes.frf, by a solve for each frequency, exact for every damping model."""
+        return self.frequency_response(frequencies_hz, damping, to, at, quantity).values
+
+    def frequency_response(
+        self,
+        frequencies_hz: ArrayLike,
+        damping: DampingLike = None,
+        to: str | None = None,
+        at: str | None = None,
+        quantity: Response = "receptance",
+    ) -> FrequencyResponse:
+        """`frf` with its labels and units, to be saved or drawn."""
+        from ..response.frequency_response import of_system
+
+        return of_system(self, frequencies_hz, damping, to, at, quantity)
+
+    def static_compliance(self, to: str | None = None, at: str | None = None) -> FloatArray:
+        """(6, 6) motion of node `to` along and about u, v, w for unit forces and moments at node `at`, by a solve.
+
+        Nodes are ``body.node``; default: the end-reference point. [m/N, rad/N; 1/N, rad/(N m)]
+        Raises PrsError when the machine can move without straining anything.
+        """
+        from ..response.points import point
+        from ..response.static import static_compliance
+
+        return static_compliance(self, point(self, to), point(self, at))
+
+    def state_space(
+        self,
+        modes: int = 20,
+        damping: DampingLike = None,
+        to: str | None = None,
+        at: str | None = None,
+        quantity: Response = "receptance",
+    ) -> StateSpace:
+        """A, B, C, D on the lowest so many modes; see Modes.state_space."""
+        return self.modes(modes).state_space(damping, to, at, quantity)

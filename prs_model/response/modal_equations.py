@@ -1,0 +1,41 @@
+"""The equations of motion on the modes: q'' + D q' + (Lambda + j H) q = Phi^T f."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..arrays import FloatArray
+from .damping import Damping, has_loss_factors, is_proportional, loss_joints, modal_rates, viscous_joints
+
+if TYPE_CHECKING:
+    from ..modes import Modes
+
+
+@dataclass(frozen=True, eq=False)
+class ModalEquations:
+    """Lambda (k,) [rad^2/s^2], D (k, k) [1/s] and H (k, k) [rad^2/s^2] of mass-normalised modes.
+
+    is_coupled: D or H has terms off the diagonal. has_loss: H is not zero.
+    """
+
+    eigenvalues: FloatArray
+    viscous: FloatArray
+    loss: FloatArray
+    is_coupled: bool
+    has_loss: bool
+
+
+def modal_equations(modes: Modes, damping: Damping) -> ModalEquations:
+    """What the modes are subject to under a damping."""
+    system, shapes = modes.system, modes.shapes
+    eigenvalues = np.where(modes.is_rigid, 0.0, modes.eigenvalues)
+    return ModalEquations(
+        eigenvalues,
+        np.diag(modal_rates(damping, eigenvalues)) + viscous_joints(system, damping, shapes),
+        loss_joints(system, damping, shapes),
+        not is_proportional(damping),
+        has_loss_factors(damping),
+    )

@@ -1,0 +1,60 @@
+"""Frequency responses drawn: magnitude and phase over frequency."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..errors import MissingExtraError, PrsError
+from ..modes.figure_file import write_figure
+
+if TYPE_CHECKING:
+    from .frequency_response import FrequencyResponse
+
+_LINES = ("-", "--", ":", "-.")  # told apart in greyscale
+
+
+def draw(responses: Mapping[str, FrequencyResponse], path: Path, pairs: Sequence[str], title: str = "") -> None:
+    """Draw entries such as ``u``, ``w/u`` of one response, or of several of one quantity by their names.
+
+    Entries of one unit share a panel. The file appears only when it is complete. Raises PrsError, MissingExtraError.
+    """
+    by_unit: dict[str, list[str]] = {}
+    first = next(iter(responses.values()))
+    for pair in pairs:
+        by_unit.setdefault(first.unit(pair), []).append(pair)
+    figure = matplotlib_figure()(figsize=(7.5 * len(by_unit), 5.6), layout="constrained")
+    panels = figure.subplots(2, len(by_unit), sharex=True, squeeze=False, height_ratios=(2, 1))
+    for k, (unit, some) in enumerate(by_unit.items()):
+        _panel(panels[:, k], responses, some, unit)
+    figure.suptitle(title, fontsize=10)
+    write_figure(figure, path)
+
+
+def _panel(axes: Any, responses: Mapping[str, FrequencyResponse], pairs: Sequence[str], unit: str) -> None:
+    for number, (name, response) in enumerate(responses.items()):
+        for place, pair in enumerate(pairs):
+            curve = response.curve(pair)
+            style = _LINES[(number if len(responses) > 1 else place) % len(_LINES)]
+            label = f"{pair} {name}".strip()
+            axes[0].plot(response.frequencies, np.abs(curve), style, color=f"C{place}", label=label)
+            axes[1].plot(response.frequencies, np.degrees(np.angle(curve)), style, color=f"C{place}")
+    axes[0].set(yscale="log", ylabel=f"{response.quantity} / ({unit})")
+    axes[0].legend(title="response/excitation" if any("/" in pair for pair in pairs) else "along, about", fontsize=8)
+    axes[1].set(xlabel="frequency / Hz", ylabel="phase / deg", ylim=(-190, 190), yticks=(-180, -90, 0, 90, 180))
+    for each in axes:
+        each.grid(True, alpha=0.3)
+
+
+def matplotlib_figure() -> Any:
+    """matplotlib's Figure. Raises MissingExtraError, or PrsError for a matplotlib that cannot be used."""
+    try:
+        from matplotlib.figure import Figure
+    except ImportError as error:
+        raise MissingExtraError("matplotlib", "plot", "drawing a frequency response") from error
+    except ValueError as error:  # a setting of its own that it does not take
+        raise PrsError(f"matplotlib cannot be used: {error}") from error
+    return Figure

@@ -1,0 +1,53 @@
+"""Nodes at which forces act and motions are read, in the axes of the output frame."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pinocchio as pin
+
+from ..arrays import FloatArray
+from ..errors import PrsError
+from ..plugins import unknown
+
+if TYPE_CHECKING:
+    from ..synthesis import System
+
+
+@dataclass(frozen=True, eq=False)
+class Point:
+    """A node by its name, and its motion (6, n) on the system's coordinates: delta [m], epsilon [rad], along u, v, w.
+
+    Its transpose spreads a wrench (force [N], moment [N m]) at the node over the coordinates.
+    """
+
+    name: str
+    motion: FloatArray
+
+
+def point(system: System, name: str | None = None) -> Point:
+    """The end-reference point, or a node ``body.node`` such as ``slider_1.hinge``.
+
+    All nodes are read in the axes u, v, w of the output frame, so that a direction means the same everywhere. An
+    interface with a node for each of its members is read as their mean.
+    Raises UnknownNameError with the known bodies or nodes, PrsError for what is no such name.
+    """
+    if name is None:
+        return Point("output", system.output)
+    body, _, node = str(name).partition(".")
+    if not node:
+        raise PrsError(f"node: found '{name}', expected body.node, such as {_example(system)}")
+    if body not in system.elements:
+        raise unknown("body", body, list(system.elements))
+    ends = system.ends
+    rotation = system.output_placement.rotation
+    place = pin.SE3(rotation, ends.position(str(name)))
+    rows, motion = ends.motion(str(name), None, place)
+    return Point(str(name), np.asarray(motion @ system.expansion[rows]))
+
+
+def _example(system: System) -> str:
+    body, element = next(iter(system.elements.items()))
+    return f"{body}.{element.nodes[0]}"

@@ -1,0 +1,82 @@
+"""What a frequency response relates: the quantity, the six directions at a node, their units."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Literal, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..arrays import FloatArray
+from ..errors import PrsError, UnknownNameError
+
+Response = Literal["receptance", "mobility", "accelerance"]
+ComplexArray = NDArray[np.complex128]
+
+DIRECTIONS = ("u", "v", "w", "ru", "rv", "rw")
+"""Along and about the axes of the output frame."""
+
+_PER_TIME: dict[Response, str] = {"receptance": "", "mobility": "/s", "accelerance": "/s^2"}
+
+
+def check_quantity(quantity: Response) -> None:
+    """Raises UnknownNameError for a quantity that is none of the three."""
+    if quantity not in get_args(Response):
+        raise UnknownNameError("quantity", str(quantity), get_args(Response))
+
+
+def from_receptance(receptance: ComplexArray, frequencies: FloatArray, quantity: Response) -> ComplexArray:
+    """(f, ..) displacement, velocity or acceleration per force: times 1, j omega or -omega^2."""
+    order = get_args(Response).index(quantity)
+    factors = (2j * np.pi * frequencies) ** order
+    return np.asarray(receptance * factors.reshape(-1, *[1] * (receptance.ndim - 1)))
+
+
+def unit(response: str, excitation: str, quantity: Response = "receptance") -> str:
+    """Such as ``m/N`` of ("u", "v"), ``rad/(N m)`` of ("rw", "rw"), ``m/s^2/N`` of an accelerance."""
+    load = load_unit(excitation)
+    return f"{motion_unit(response, quantity)}/{f'({load})' if ' ' in load else load}"
+
+
+def motion_unit(direction: str, quantity: Response = "receptance") -> str:
+    """Such as ``m`` or ``rad/s^2``."""
+    return f"{'rad' if _is_rotation(direction) else 'm'}{_PER_TIME[quantity]}"
+
+
+def load_unit(direction: str) -> str:
+    """``N`` or ``N m``."""
+    return "N m" if _is_rotation(direction) else "N"
+
+
+def _is_rotation(direction: str) -> bool:
+    return DIRECTIONS.index(direction) >= 3
+
+
+def pair_of(text: str) -> tuple[str, str]:
+    """Response and excitation directions of ``w/u``, or of ``u``, which stands for ``u/u``. Raises UnknownNameError."""
+    response, _, excitation = text.partition("/")
+    for direction in (response, excitation or response):
+        if direction not in DIRECTIONS:
+            raise UnknownNameError("direction", direction, DIRECTIONS, "A pair is written response/excitation: w/u")
+    return response, excitation or response
+
+
+def frequencies_from(values: ArrayLike) -> FloatArray:
+    """(f,) [Hz]. Raises PrsError unless they are numbers above zero."""
+    try:
+        frequencies = np.atleast_1d(np.asarray(values, dtype=float))
+    except (TypeError, ValueError):
+        raise PrsError(f"frequencies: found {values!r}, expected numbers above zero [Hz]") from None
+    wrong = frequencies[~(np.isfinite(frequencies) & (frequencies > 0.0))]
+    if frequencies.ndim != 1 or not frequencies.size or wrong.size:
+        found = f"{wrong[0]:g} Hz" if wrong.size else f"an array of shape {frequencies.shape}"
+        raise PrsError(f"frequencies: found {found}, expected a list of numbers above zero [Hz]")
+    return frequencies
+
+
+def listed_pairs(pairs: Sequence[str] | None) -> list[tuple[str, str]]:
+    """The directions of texts such as ``w/u``; all 36 for None."""
+    if pairs is None:
+        return [(response, excitation) for response in DIRECTIONS for excitation in DIRECTIONS]
+    return [pair_of(text) for text in pairs]

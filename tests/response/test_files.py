@@ -1,0 +1,64 @@
+"""Frequency responses as files."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import prs_model as prs
+from prs_model.response import FrequencyResponse
+
+
+@pytest.fixture(scope="module")
+def response() -> FrequencyResponse:
+    return (
+        prs.load_machine("hexapod").modes(6).frequency_response(np.linspace(500.0, 1500.0, 37), 0.02, "upper_1.joint")
+    )
+
+
+def test_csv_comes_back(response: FrequencyResponse, tmp_path: Path) -> None:
+    response.save(tmp_path / "h.csv", ("u", "rw/v"))
+    lines = (tmp_path / "h.csv").read_text().splitlines()
+    assert lines[0] == "frequency [Hz],re u/u [m/N],im u/u [m/N],re rw/v [rad/N],im rw/v [rad/N]"
+    table = np.loadtxt(lines[1:], delimiter=",")
+    assert table[:, 0] == pytest.approx(response.frequencies, rel=1e-15)
+    assert table[:, 3] + 1j * table[:, 4] == pytest.approx(response.curve("rw/v"), rel=1e-11)
+
+
+def test_universal_file_comes_back(response: FrequencyResponse, tmp_path: Path) -> None:
+    pyuff = pytest.importorskip("pyuff")
+    response.save(tmp_path / "h.uff")
+    file = pyuff.UFF(str(tmp_path / "h.uff"))
+    assert list(file.get_set_types()) == [164, *[58] * 36]
+    sets = file.read_sets()
+    assert (sets[0]["units_code"], sets[0]["length"], sets[0]["force"]) == (1, 1.0, 1.0)
+    last = sets[-2]  # rw/rv
+    assert (last["func_type"], last["rsp_node"], last["rsp_dir"], last["ref_node"], last["ref_dir"]) == (4, 1, 6, 2, 5)
+    assert (last["ordinate_spec_data_type"], last["orddenom_spec_data_type"]) == (8, 13)
+    assert last["id1"].strip() == "receptance rw/rv [rad/(N m)]"
+    assert last["x"] == pytest.approx(response.frequencies, rel=1e-5)
+    assert last["data"] == pytest.approx(response.curve("rw/rv"), rel=1e-10)
+
+
+def test_pictures_are_drawn_whole(response: FrequencyResponse, tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    response.save(tmp_path / "h.svg", ("u", "ru"), "title")
+    text = (tmp_path / "h.svg").read_text()
+    assert "receptance / (rad/(N m))" in text
+    assert [each.name for each in tmp_path.iterdir()] == ["h.svg"]
+
+
+@pytest.mark.parametrize(
+    ("name", "pairs", "words"),
+    [
+        ("h.xls", None, "found a name ending in '.xls', expected one of .csv, .uff, .png"),
+        ("no/h.csv", None, "cannot be written"),
+        ("h.csv", ("x",), "unknown direction 'x'; known: u, v, w, ru, rv, rw"),
+    ],
+)
+def test_what_cannot_be_written_is_told(
+    response: FrequencyResponse, tmp_path: Path, name: str, pairs: tuple[str, ...] | None, words: str
+) -> None:
+    with pytest.raises(prs.PrsError, match=words):
+        response.save(tmp_path / name, pairs)
+    assert not list(tmp_path.iterdir())
