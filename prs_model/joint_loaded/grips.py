@@ -6,62 +6,69 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import pinocchio as pin
+from scipy.linalg import block_diag
 
 from ..arrays import FloatArray
-from ..joints import ElasticJoint, JointCompliance, Spring
+from ..joints import ElasticJoint, Spring
 from ..kinematics import Configuration
-from ..reduction import SuperElement
 from ..synthesis.ends import Ends
 
 
 @dataclass(frozen=True, eq=False)
 class Grip:
-    """One end of a spring.
+    """The springs of a joint that meet one motion beyond it, at one end of them.
 
-    end: (6, n), the motion of the part's end on its coordinates, in the spring's axes. counterpart: (6, 6), that of the
-    other end when the body beyond moves rigidly, by a unit twist at this part's origin in its axes; zero for the
-    ground. pattern: grips of one pattern meet the same rigid motion. nodes: of the part, that it takes hold of.
+    end: (m, n), the motions of the part that the springs' wrenches work on, from its coordinates. beyond: (m, 6), those
+    of the other ends when the body beyond moves by a unit twist at this part's origin, in its axes. other: (m, k),
+    the same from that body's coordinates, `body`; zero and None for the ground. compliance: (m, m). nodes: of the part,
+    that they take hold of. several: whether the body beyond can deform between them.
     """
 
     end: FloatArray
-    counterpart: FloatArray
-    law: JointCompliance
-    pattern: tuple[str, str | None]
+    beyond: FloatArray
+    other: FloatArray
+    body: str | None
+    compliance: FloatArray
     nodes: tuple[int, ...]
+    several: bool
 
 
-def grips(
-    body: str, element: SuperElement, joints: Sequence[ElasticJoint], at: Configuration, frame: str, laws: Configuration
-) -> list[Grip]:
-    """Every hold of joints on a body with this element and frame; springs as `laws` has them, placed as in `at`."""
-    placement = at.placement(frame)
-    ends = Ends({body: element}, {body: slice(0, element.size)}, {body: placement})
-    return [
-        _grip(joint, spring, side, ends, placement)
-        for joint in joints
-        if body in {_body(end) for end in joint.between}
-        for spring in joint.springs(laws.joint_values, at.placement)
-        for side in (0, 1)
-        if _body(spring.between[side]) == body
-    ]
+def grips(body: str, joints: Sequence[ElasticJoint], ends: Ends, at: Configuration, laws: Configuration) -> list[Grip]:
+    """Every hold of joints on a body: springs placed as in the configuration `at`, as stiff as in `laws`.
+
+    What is bolted or rigid follows the other side at each interface; bearings and carriages meet it as one body.
+    """
+    held: dict[tuple[str, int, str | None], list[Spring]] = {}
+    for joint in joints:
+        sides = [side for side in (0, 1) if _body(joint.between[side]) == body]
+        for spring in joint.springs(laws.joint_values, at.placement) if sides else ():
+            apart = not joint.moves or spring.law.rigid_wrenches.shape[1] > 0
+            for side in sides:
+                held.setdefault((joint.name, side, spring.interface if apart else None), []).append(spring)
+    return [_grip(springs, side, ends) for (_, side, _), springs in held.items()]
 
 
-def _grip(joint: ElasticJoint, spring: Spring, side: int, ends: Ends, placement: pin.SE3) -> Grip:
-    end, beyond = spring.between[side], spring.between[1 - side]
-    seen = np.asarray((spring.placement.inverse() * placement).toActionMatrix())
+def _grip(springs: Sequence[Spring], side: int, ends: Ends) -> Grip:
+    end, beyond = springs[0].between[side], springs[0].between[1 - side]
+    grounded = beyond == "ground"
+    end_motions = _motions(springs, end, ends)
+    placement = ends.placements[_body(end)]
+    twists = [spring.law.wrenches.T @ (spring.placement.inverse() * placement).toActionMatrix() for spring in springs]
     return Grip(
-        end=ends.motion(end, spring.interface, spring.placement)[1],
-        counterpart=np.zeros((6, 6)) if beyond == "ground" else seen,
-        law=spring.law,
-        pattern=(joint.name, spring.interface if _follows_each_interface(joint, spring) else None),
-        nodes=tuple(ends.nodes(end, spring.interface)),
+        end=end_motions,
+        beyond=np.zeros((len(end_motions), 6)) if grounded else np.vstack(twists),
+        other=np.zeros((len(end_motions), 0)) if grounded else _motions(springs, beyond, ends),
+        body=None if grounded else _body(beyond),
+        compliance=block_diag(*(spring.law.compliance for spring in springs)),
+        nodes=tuple(node for spring in springs for node in ends.nodes(end, spring.interface)),
+        several=len(springs) > 1,
     )
 
 
-def _follows_each_interface(joint: ElasticJoint, spring: Spring) -> bool:
-    """What is bolted or rigid follows the other side's deformation; bearings and carriages meet it as a rigid body."""
-    return not joint.moves or spring.law.rigid_wrenches.shape[1] > 0
+def _motions(springs: Sequence[Spring], end: str, ends: Ends) -> FloatArray:
+    """(m, n): what the springs' wrenches work on at one end, from the coordinates of its body."""
+    seen = [ends.motion(end, spring.interface, spring.placement)[1] for spring in springs]
+    return np.vstack([spring.law.wrenches.T @ motion for spring, motion in zip(springs, seen, strict=True)])
 
 
 def _body(end: str) -> str:

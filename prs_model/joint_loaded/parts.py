@@ -1,4 +1,4 @@
-"""Parts that await their joints become super-elements in the shapes that these can give them."""
+"""Parts that await their joints become super-elements in the shapes that these, and the machine, can give them."""
 
 from __future__ import annotations
 
@@ -15,63 +15,125 @@ from ..kinematics import Configuration
 from ..reduction import SuperElement, TravellingElement
 from ..reduction.from_model import AWAITS_JOINTS
 from ..reduction.gate import JOINT_LOADED
-from .basis import Held, joint_loaded_basis, reach_of, rigid_and_elastic, static_shapes
-from .grips import grips
+from .basis import energy_matrix, equal_in_energy, independent, rigid_and_elastic, shapes_under_loads, static_shapes
+from .enrichment import Directions, Sight, counts, directions, patterns_beyond
+from .held import Held
+from .holding import Holding, Part
+from .snapshots import Snapshot, snapshots
 
-Part = SuperElement | TravellingElement
+Kind = tuple[str, ...]
+"""Bodies that share one part."""
+
+Shapes = Callable[[Held], FloatArray]
+"""Shapes (n, c) of a part as it is held; columns correspond wherever it is."""
 
 
 def joint_loaded_parts(
     description: MachineDescription,
     parts: Mapping[str, Part],
     joints: Sequence[ElasticJoint],
-    reference: Callable[[], Configuration],
+    configuration: Callable[..., Configuration],
 ) -> dict[str, Part]:
     """The parts of a machine, those that await their joints reduced to their shapes under them.
 
-    Joints are taken as they are in the reference configuration; how stiff they are matters to the shapes only, the
-    springs themselves stay in the assembly. Raises PhysicsError for a travelling part that does not interpolate.
+    configuration: at a pose, the reference by default. Joints are taken as they are in the reference configuration;
+    how stiff they are matters to the shapes only, the springs themselves stay in the assembly.
+    Raises PhysicsError for a travelling part that does not interpolate.
     """
-    if not any(_awaits(part) for part in parts.values()):
+    kinds = _kinds(parts)
+    if not kinds:
         return dict(parts)
-    there = reference()
-    return {
-        name: _loaded(name, part, description, joints, there) if _awaits(part) else part for name, part in parts.items()
-    }
+    holding = Holding(description, parts, joints, configuration())
+    extra = _machine_shapes(holding, kinds, configuration)
+    loaded = {name: _loaded(holding, name, extra[kind]) for kind in kinds for name in kind}
+    return {name: loaded.get(name, part) for name, part in parts.items()}
 
 
-def _awaits(part: Part) -> bool:
-    first = part if isinstance(part, SuperElement) else part.elements[0]
-    return first.provenance.get("basis") == AWAITS_JOINTS
+def _kinds(parts: Mapping[str, Part]) -> list[Kind]:
+    """The bodies whose parts await their joints, those with the same part together."""
+    kinds: dict[int, list[str]] = {}
+    for name, part in parts.items():
+        first = part if isinstance(part, SuperElement) else part.elements[0]
+        if first.provenance.get("basis") == AWAITS_JOINTS:
+            kinds.setdefault(id(first), []).append(name)
+    return [tuple(names) for names in kinds.values()]
 
 
-def _loaded(
-    name: str, part: Part, description: MachineDescription, joints: Sequence[ElasticJoint], reference: Configuration
-) -> Part:
-    body = description.bodies[name]
+def _machine_shapes(
+    holding: Holding, kinds: Sequence[Kind], configuration: Callable[..., Configuration]
+) -> dict[Kind, Shapes]:
+    """The shapes that the machine's modes ask for besides the static ones.
 
-    def held(element: SuperElement, at: Configuration) -> Held:
-        return Held(element, grips(name, element, joints, at, body.frame, reference))
-
-    if isinstance(part, TravellingElement):
-        stations = [reference.moved({part.joint: value}) for value in part.stations.tolist()]
-        return _travelling(part, [held(*each) for each in zip(part.elements, stations, strict=True)])
-    modes = Settings.of(body, description.file.reduction).modes
-    return _in_shapes(part, joint_loaded_basis(held(part, reference), modes))
-
-
-def _travelling(part: TravellingElement, stations: Sequence[Held]) -> TravellingElement:
-    """In static shapes and in the modes that it came with: the same combinations of them at every station.
-
-    Both are smooth along the way; modes under the joints would change places. A free part's rigid motions come first:
-    they strain nothing, and the stiffness of the rest is positive definite, and interpolated so that it stays so.
+    Bodies have as many as their `modes` says; those that leave it to the machine share what it gives them all.
     """
-    middle = len(stations) // 2
-    reach = reach_of(part.elements[middle])
-    statics = [static_shapes(station, reach) for station in stations]
-    rigid, elastic = rigid_and_elastic(stations[middle], statics[middle])
+    description = holding.description
+    modes = {name: Settings.of(body, description.file.reduction).modes for name, body in description.bodies.items()}
+    if not any(modes[name] for kind in kinds for name in kind):
+        return dict.fromkeys(kinds, _no_shapes)
+    samples = snapshots(description, holding.parts, holding.joints, configuration)
+    candidates = {kind: _candidates(holding, kind, samples) for kind in kinds}
+    ranked = {kind: _ranked(holding, kind, samples, candidates[kind]) for kind in kinds}
+    shared = {kind: found for kind, found in ranked.items() if description.bodies[kind[0]].modes is None}
+    budget = sum(modes[name] for kind in shared for name in kind)
+    taken = {kind: modes[kind[0]] for kind in kinds} | counts(shared, budget)
+    return {kind: _combined(candidates[kind], found.combinations[:, : taken[kind]]) for kind, found in ranked.items()}
+
+
+def _candidates(holding: Holding, kind: Kind, samples: Sequence[Snapshot]) -> Shapes:
+    """All shapes of a part; of one whose contact travels those that are smooth along the way.
+
+    These are its shapes when the bodies beyond deform as they do in the machine's modes, and its stored modes.
+    """
+    part = holding.parts[kind[0]]
+    if isinstance(part, SuperElement):
+        return lambda held: np.eye(held.element.size)
+    seen = [(holding.held(name, at), shapes) for name in kind for at, shapes in samples]
+    patterns = patterns_beyond(seen)
     modes = np.eye(part.size)[:, part.size - part.n_modes :]
-    bases = [np.hstack([static @ rigid, static @ elastic, modes]) for static in statics]
+
+    def smooth(held: Held) -> FloatArray:
+        return np.hstack([*(held.following(held.grips[place], each) for place, each in patterns.items()), modes])
+
+    return smooth
+
+
+def _ranked(holding: Holding, kind: Kind, samples: Sequence[Snapshot], candidates: Shapes) -> Directions:
+    held = [(holding.held(name, at), shapes[name]) for name in kind for at, shapes in samples]
+    return directions([Sight(part, own, static_shapes(part), candidates(part)) for part, own in held])
+
+
+def _combined(candidates: Shapes, combinations: FloatArray) -> Shapes:
+    return lambda held: candidates(held) @ combinations
+
+
+def _no_shapes(held: Held) -> FloatArray:
+    return np.zeros((held.element.size, 0))
+
+
+def _loaded(holding: Holding, name: str, extra: Shapes) -> Part:
+    part = holding.parts[name]
+    if isinstance(part, TravellingElement):
+        return _travelling(part, holding.at_stations(name), extra)
+    held = holding.held(name, holding.reference)
+    static = static_shapes(held)
+    energy = energy_matrix(held, static)
+    columns = np.hstack([static, held.still, shapes_under_loads(held), extra(held)])
+    columns = columns * equal_in_energy(energy, columns, len(held.grips))
+    return _in_shapes(part, columns @ independent(energy, columns))
+
+
+def _travelling(part: TravellingElement, stations: Sequence[Held], extra: Shapes) -> TravellingElement:
+    """The same combinations of shapes at every station: they are smooth along the way.
+
+    A free part's rigid motions come first: they strain nothing, and the stiffness of the rest is positive definite, and
+    interpolated so that it stays so.
+    """
+    columns = [np.hstack([static_shapes(held), shapes_under_loads(held), extra(held)]) for held in stations]
+    middle, patterns = len(stations) // 2, len(stations[0].grips)
+    energy = energy_matrix(stations[middle], static_shapes(stations[middle]))
+    size = equal_in_energy(energy, columns[middle], patterns)
+    rigid, elastic = rigid_and_elastic(stations[middle], energy, columns[middle] * size, patterns)
+    bases = [each * size @ np.hstack([rigid, elastic]) for each in columns]
     elements = tuple(_in_shapes(element, basis) for element, basis in zip(part.elements, bases, strict=True))
     if (products := part.products) is not None:
         products = np.einsum("iab,ijac,jcd->ijbd", bases, products, bases, optimize=True)

@@ -55,7 +55,7 @@ class JointCompliance:
 
     @cached_property
     def _halves(self) -> tuple[FloatArray, FloatArray]:
-        return _split(self.compliance)
+        return elastic_and_rigid(self.compliance)
 
 
 def along_axes(compliances: dict[int, float]) -> JointCompliance:
@@ -84,7 +84,7 @@ def parallel(joints: Sequence[JointCompliance]) -> JointCompliance:
     wrenches = orth(basis, rcond=_RANK_TOLERANCE)
     share = np.linalg.pinv(basis) @ wrenches
     internal = _null_space(basis)
-    inverse, _ = _split(internal.T @ compliance @ internal)
+    inverse, _ = elastic_and_rigid(internal.T @ compliance @ internal)
     share = share - internal @ (inverse @ (internal.T @ compliance @ share))
     return JointCompliance(wrenches, share.T @ compliance @ share)
 
@@ -116,7 +116,7 @@ def series_as_printed(joints: Sequence[JointCompliance], actions: Sequence[Float
     return JointCompliance(np.eye(6), total)
 
 
-def _split(compliance: FloatArray) -> tuple[FloatArray, FloatArray]:
+def elastic_and_rigid(compliance: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Generalised inverse of a positive semi-definite C (m, m), and a basis (m, r) of its null space.
 
     The rank is decided on C scaled to a unit diagonal, so that metres and radians do not matter; a diagonal

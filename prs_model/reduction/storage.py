@@ -35,7 +35,7 @@ def save(element: SuperElement | TravellingElement, path: str | Path) -> None:
         header["joint"] = element.joint
         arrays["stations"] = element.stations
         if element.products is not None:
-            arrays["products"] = element.products
+            arrays["products"] = element.products[np.triu_indices(len(stations))]
     contents: dict[str, Any] = {"header": np.array(json.dumps(header, sort_keys=True)), **arrays}
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -158,7 +158,18 @@ def _element(content: dict[str, Any], arrays: Arrays, path: Path) -> SuperElemen
         return elements[0]
     if header.joint is None:
         raise ValueError("no joint for its stations")
-    return TravellingElement(header.joint, stations, elements, arrays.get("products"))
+    products = _whole(arrays["products"], len(stations)) if "products" in arrays else None
+    return TravellingElement(header.joint, stations, elements, products)
+
+
+def _whole(products: NDArray[Any], count: int) -> NDArray[Any]:
+    """P (s, s, n, n) with P_ji = P_ij^T, from those with i <= j."""
+    rows, columns = np.triu_indices(count)
+    if len(products) != len(rows):
+        raise ValueError(f"products are {len(products)}, expected {len(rows)}")
+    whole = np.empty((count, count, *products.shape[1:]))
+    whole[rows, columns], whole[columns, rows] = products, products.swapaxes(1, 2)
+    return whole
 
 
 def _station(header: _Header, arrays: Arrays, index: int) -> SuperElement:
