@@ -11,6 +11,8 @@ from scipy.linalg import cholesky, solve_triangular
 from ..arrays import FloatArray
 from ..errors import PrsError
 from ..linear_algebra import positive_definite_pencil
+from .points import Point
+from .static import solved_scaled
 
 if TYPE_CHECKING:
     from ..modes import Modes
@@ -29,13 +31,10 @@ def with_residual_vectors(modes: Modes, loads: FloatArray) -> Modes:
     K - s M in place of K, s so small that only its rigid-body modes notice.
     Raises PrsError when all modes kept are rigid-body modes.
     """
-    system = modes.system
-    shift, pencil = positive_definite_pencil(system.mass, system.stiffness)
-    if shift != 0.0 and modes.is_rigid.all():
-        raise PrsError(f"found {len(modes.eigenvalues)} modes, all at 0 Hz, expected some above; ask for more modes")
+    shift, pencil = _pencil(modes)
     scale = 1.0 / np.sqrt(np.diag(pencil))[:, None]
     factor = cholesky(pencil * scale * scale.T, lower=True)
-    half = solve_triangular(factor, system.mass * scale * scale.T, lower=True)
+    half = solve_triangular(factor, modes.system.mass * scale * scale.T, lower=True)
     mass = solve_triangular(factor, half.T, lower=True)  # in coordinates in which K - s M is the identity
     kept = factor.T @ (modes.shapes / scale)
     basis, block = kept / np.linalg.norm(kept, axis=0), solve_triangular(factor, scale * loads, lower=True)
@@ -51,6 +50,26 @@ def with_residual_vectors(modes: Modes, loads: FloatArray) -> Modes:
         eigenvalues=np.concatenate([modes.eigenvalues, 1.0 / flexibility + shift]),
         shapes=np.hstack([modes.shapes, shapes]),
     )
+
+
+def residual_compliance(modes: Modes, to: Point, at: Point) -> FloatArray:
+    """(6, 6): the first of these vectors alone, sum phi phi^T / lambda over the modes left out; zero when none is.
+
+    Raises PrsError when all modes kept are rigid-body modes.
+    """
+    if modes.shapes.shape[1] == modes.system.size:
+        return np.zeros((6, 6))
+    _, pencil = _pencil(modes)
+    load = at.motion.T - modes.system.mass @ (modes.shapes @ (modes.shapes.T @ at.motion.T))
+    return np.asarray(to.motion @ solved_scaled(pencil, load))
+
+
+def _pencil(modes: Modes) -> tuple[float, FloatArray]:
+    """s and K - s M."""
+    shift, pencil = positive_definite_pencil(modes.system.mass, modes.system.stiffness)
+    if shift != 0.0 and modes.is_rigid.all():
+        raise PrsError(f"found {len(modes.eigenvalues)} modes, all at 0 Hz, expected some above; ask for more modes")
+    return shift, pencil
 
 
 def _new_directions(block: FloatArray, basis: FloatArray) -> FloatArray:

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import scipy.signal
 from numpy.typing import ArrayLike
 
 from ..arrays import FloatArray
@@ -15,10 +14,12 @@ from .damping import DampingLike, damping_of
 from .modal_equations import modal_equations
 from .points import point
 from .quantity import DIRECTIONS, Response, check_quantity
-from .static import residual_compliance
+from .residual import residual_compliance
 from .time_response import Hold, time_response
 
 if TYPE_CHECKING:
+    import scipy.signal
+
     from ..modes import Modes
 
 
@@ -42,7 +43,9 @@ class StateSpace:
 
     def to_scipy(self) -> scipy.signal.StateSpace:
         """The same for SciPy."""
-        return scipy.signal.StateSpace(self.a, self.b, self.c, self.d)
+        from scipy.signal import StateSpace as SciPyStateSpace
+
+        return SciPyStateSpace(self.a, self.b, self.c, self.d)
 
     def to_control(self) -> Any:
         """The same for python-control, inputs and outputs by name. Raises MissingExtraError."""

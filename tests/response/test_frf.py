@@ -1,5 +1,6 @@
 """Frequency responses: closed forms, modal against direct, truncation, reciprocity, units."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -7,7 +8,7 @@ import pytest
 
 import prs_model as prs
 from prs_model.synthesis import System
-from tests.response.two_masses import K1, K2, receptance, row
+from tests.response.two_masses import K1, K2, M2, receptance, row
 from tests.verification.gantry import gantry
 
 JOINTS = {"modal": 0.01, "joints": {"X": {"loss_factor": 0.05}, "R": {"viscous": 2e-5}}}
@@ -110,6 +111,23 @@ def test_a_free_machine_answers_too(tmp_path: Path) -> None:
         system.static_compliance()
     with pytest.raises(prs.PrsError, match="0 Hz"):
         modes.modal_flexibility()
+    with pytest.raises(prs.PrsError, match="found 3 modes, all at 0 Hz, expected some above; ask for more modes"):
+        system.modes(3).frf([0.5])
+
+
+def test_motions_without_mass_follow_at_once(tmp_path: Path) -> None:
+    """Mass 1 left out: two springs in a row carry mass 2, and their joint follows at once."""
+    system = row(tmp_path).assemble()
+    first = next(k for k, coordinate in enumerate(system.index) if coordinate.body == "one")
+    mass = system.mass.copy()
+    mass[first] = mass[:, first] = 0.0
+    modes = replace(system, mass=mass).modes(2)
+    assert len(modes.frequencies) == 1
+    frequencies = np.array([3.0, 12.0, 50.0])
+    swing = 1.0 / (1.0 / (1.0 / K1 + 1.0 / K2) - (2.0 * np.pi * frequencies) ** 2 * M2)
+    assert modes.frf(frequencies, 0.0)[:, 0, 0].real == pytest.approx(swing)
+    own = 1.0 / (K1 + K2) + (K2 / (K1 + K2)) ** 2 * swing
+    assert modes.frf(frequencies, 0.0, "one.end", "one.end")[:, 0, 0].real == pytest.approx(own)
 
 
 def test_without_damping_a_resonance_is_told(tmp_path: Path) -> None:
