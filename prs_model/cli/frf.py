@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -103,7 +104,7 @@ def run(options: argparse.Namespace) -> dict[str, Any]:
         "modes": None if options.direct else len(modes.frequencies),
         "frequencies_hz": response.frequencies.tolist(),
         "curves": [_curve(response, pair) for pair in pairs],
-        **_static(system, modes, options),
+        **_static(system, _up_to(modes, float(response.frequencies.max())), options),
         "files": [str(file) for file in options.output],
     }
 
@@ -146,12 +147,18 @@ def _curve(response: FrequencyResponse, pair: str) -> dict[str, Any]:
 
 
 def _static(system: System, modes: Modes, options: argparse.Namespace) -> dict[str, Any]:
-    """Compliance between the nodes, and the weak modes where both are the output; none of a machine that is free."""
+    """Compliance between the nodes, and the weak ones of the modes where both are the output; none if it is free."""
     if system.modes(1).is_rigid.any():
         return {"static_compliance": None, "weak_modes": []}
     weak = modes.weak_modes() if options.to is None and options.at is None else ()
     compliance = system.static_compliance(options.to, options.at)
     return {"static_compliance": compliance.tolist(), "weak_modes": [str(mode) for mode in weak]}
+
+
+def _up_to(modes: Modes, frequency: float) -> Modes:
+    """The modes up to a frequency, at least one: those far above are the node's own surroundings giving way."""
+    count = max(1, int(np.sum(modes.frequencies <= frequency)))
+    return replace(modes, eigenvalues=modes.eigenvalues[:count], shapes=modes.shapes[:, :count])
 
 
 def _static_rows(outcome: dict[str, Any]) -> list[tuple[str, ...]]:

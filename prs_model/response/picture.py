@@ -39,11 +39,11 @@ def _panel(axes: Any, responses: Mapping[str, FrequencyResponse], pairs: Sequenc
         for place, pair in enumerate(pairs):
             curve = response.curve(pair)
             style = _LINES[(number if len(responses) > 1 else place) % len(_LINES)]
-            label = f"{pair} {name}".strip()
+            label = f"{'/'.join(dict.fromkeys(pair.split('/')))} {name}".strip()
             axes[0].plot(response.frequencies, np.abs(curve), style, color=f"C{place}", label=label)
             axes[1].plot(response.frequencies, np.degrees(np.angle(curve)), style, color=f"C{place}")
     axes[0].set(yscale="log", ylabel=f"{response.quantity} / ({unit})")
-    axes[0].legend(title="response/excitation" if any("/" in pair for pair in pairs) else "along, about", fontsize=8)
+    axes[0].legend(title="response/force", fontsize=8)
     axes[1].set(xlabel="frequency / Hz", ylabel="phase / deg", ylim=(-190, 190), yticks=(-180, -90, 0, 90, 180))
     for each in axes:
         each.grid(True, alpha=0.3)

@@ -63,7 +63,7 @@ def test_files_are_written(capsys: pytest.CaptureFixture[str], tmp_path: Path) -
         (["--to", "plattform.M"], "unknown body 'plattform'"),
         (["--direction", "x"], "unknown direction 'x'; known: u, v, w, ru, rv, rw"),
         (["-o", "no/such/folder/h.csv"], "no/such/folder/h.csv: cannot be written (No such file or directory)"),
-        (["-o", "/proc/h.uff"], "/proc/h.uff: cannot be written"),
+        (["-o", "/proc/h.csv"], "/proc/h.csv: cannot be written"),
         (["-o", "h.xlsx"], "expected one of .csv, .uff, .png"),
         (["--pose", "z=5m"], "z"),
     ],
