@@ -77,7 +77,9 @@ def _slow(space: Subspace, known: int) -> FloatArray:
 
 
 def enlarged(space: Subspace, shapes: FloatArray) -> Subspace:
-    """The subspace with what is new in `shapes` (n, c)."""
+    """The subspace with what is new in `shapes` (n, c), never of more motions than the part has DOFs."""
+    if space.size == space.part.size:
+        return space
     model, shift, vectors = space.part.model, space.part.shift, space.vectors
     loads = model.stiffness @ shapes - shift * (model.mass @ shapes)
     before = np.einsum("ij,ij->j", shapes, loads)
@@ -87,8 +89,9 @@ def enlarged(space: Subspace, shapes: FloatArray) -> Subspace:
     new = np.flatnonzero(energy > NEW * before)
     scale = 1.0 / np.sqrt(energy[new])
     weight, turn = eigh((shapes[:, new] * scale).T @ (strained - shift * moved)[:, new] * scale)
-    change = np.zeros((len(energy), np.count_nonzero(weight > APART)))
-    change[new] = scale[:, None] * turn[:, weight > APART] / np.sqrt(weight[weight > APART])
+    apart = np.flatnonzero(weight > APART)[space.size - space.part.size :]
+    change = np.zeros((len(energy), len(apart)))
+    change[new] = scale[:, None] * turn[:, apart] / np.sqrt(weight[apart])
     added = shapes @ change
     return Subspace(
         part=space.part,

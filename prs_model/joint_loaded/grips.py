@@ -38,14 +38,14 @@ def grips(body: str, joints: Sequence[ElasticJoint], ends: Ends, at: Configurati
 
     What is bolted or rigid follows the other side at each interface; bearings and carriages meet it as one body.
     """
-    held: dict[tuple[str, int, str | None], list[Spring]] = {}
+    held: dict[tuple[str, int, bool, str | None], list[Spring]] = {}
     for joint in joints:
         sides = [side for side in (0, 1) if _body(joint.between[side]) == body]
         for spring in joint.springs(laws.joint_values, at.placement) if sides else ():
             apart = not joint.moves or spring.law.rigid_wrenches.shape[1] > 0
             for side in sides:
-                held.setdefault((joint.name, side, spring.interface if apart else None), []).append(spring)
-    return [_grip(springs, side, ends) for (_, side, _), springs in held.items()]
+                held.setdefault((joint.name, side, apart, spring.interface if apart else None), []).append(spring)
+    return [_grip(springs, side, ends) for (_, side, *_), springs in held.items()]
 
 
 def _grip(springs: Sequence[Spring], side: int, ends: Ends) -> Grip:

@@ -32,7 +32,7 @@ def run(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, 
 
 def test_tables_and_progress(folder, capsys):
     status, out, err = run(capsys, "verify", folder, *SHORT, "--pose", "x=0.4", "--pose", "phi=10deg", "y=50mm")
-    assert status == 0
+    assert status == 0, err
     assert "2    x 375 mm, y 50 mm, phi 10 deg" in out
     assert re.search(r"^A +complete order, interfaces averaged +1053 ", out, re.MULTILINE)
     assert re.search(r"^averaged-interface +averaged, one node an interface +66 .* A +\+", out, re.MULTILINE)
@@ -43,7 +43,7 @@ def test_json_is_one_object_and_joints_are_scaled(folder, capsys):
     grid = ["--grid", "x=300:400mm:2", "phi=0,30deg", "--random", "1", "--stiffness", "2"]
     with_json = ["--set", "joints.Y.drive.stiffness=1.0e8", "--json", "-q"]
     status, out, err = run(capsys, "verify", folder, *SHORT, *grid, *with_json)
-    assert status == 0
+    assert status == 0, err
     assert err == ""
     plain, stiffer = json.loads(out)["reports"]
     assert (plain["joint_stiffness"], stiffer["joint_stiffness"]) == (1.0, 2.0)
@@ -75,7 +75,7 @@ def test_a_quick_look_is_taken_at_a_copy(folder, tmp_path, capsys):
     before = {path.name: path.read_bytes() for path in Path(folder).iterdir()}
     Path(folder, "rebuild.py").write_text(REBUILD.format(coarse=tmp_path / "coarse"))
     status, out, err = run(capsys, "verify", folder, *SHORT, "--pose", "x=0.4", "--size", "2.5")
-    assert status == 0
+    assert status == 0, err
     assert "meshing at 2.5" in err
     assert re.search(r"^A +complete order, interfaces averaged +912 ", out, re.MULTILINE)
     assert before == {path.name: path.read_bytes() for path in Path(folder).iterdir() if path.name != "rebuild.py"}
