@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
 
-.PHONY: demo test check parts pictures clean
+.PHONY: demo test check rebuild parts verification pictures clean
 
 demo: $(VENV)/.plot
 	@mkdir -p out
@@ -17,6 +17,14 @@ check: $(VENV)/.dev
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+# Makes everything anew that is shipped and was computed (about an hour on two cores).
+rebuild: parts verification pictures
+
+# Holds the reductions of head_3prs against its complete finite-element model: docs/verification.
+verification: $(VENV)/.fem $(VENV)/.mesh $(VENV)/.plot
+	$(BIN)/prs-model verify head_3prs --random 20 --curve --bounds -o docs/verification
+	$(BIN)/prs-model verify head_3prs --random 20 --models A --reductions joint-loaded --stiffness 0.5 2 -o docs/verification/stiffness
 
 # Rebuilds the meshes and super-elements of head_3prs from its part script (needs Debian's libglu1-mesa and X libraries).
 parts: $(VENV)/.fem $(VENV)/.mesh
