@@ -16,7 +16,6 @@ from ..arrays import FloatArray
 from .held import Held
 
 REPEATED = 1e-9  # of the largest energy: what remains of a shape that others make up
-STRAINED = 1e-8  # of a shape's energy in the norm of `energy_matrix`
 
 
 def static_shapes(part: Held) -> FloatArray:
@@ -58,33 +57,22 @@ def independent(energy: FloatArray, shapes: FloatArray) -> FloatArray:
     return np.asarray(combination[:, apart] / np.sqrt(weight[apart]))
 
 
-def equal_in_energy(energy: FloatArray, shapes: FloatArray, patterns: int) -> FloatArray:
-    """Factors (c,) on shapes (n, c): one on the static shapes, the first 6 `patterns`, that makes the largest a unit of
-    energy; on each of the others what makes it one; zero on shapes without energy.
+def equal_in_energy(energy: FloatArray, static: FloatArray, others: FloatArray) -> FloatArray:
+    """Factors (c,) on static shapes and others, in this order: one on all static shapes, that makes the largest a unit
+    of energy; on each of the others what makes it one; zero on shapes without energy.
     """
-    own = energies(energy, shapes)
-    own[: 6 * patterns] = own[: 6 * patterns].max(initial=0.0)
-    return np.divide(1.0, np.sqrt(own), out=np.zeros_like(own), where=own > 0.0)
+    own = energies(energy, static)
+    size = np.concatenate([np.full(len(own), own.max(initial=0.0)), energies(energy, others)])
+    return np.asarray(np.divide(1.0, np.sqrt(size), out=np.zeros_like(size), where=size > 0.0))
 
 
-def rigid_and_elastic(
-    part: Held, energy: FloatArray, shapes: FloatArray, patterns: int
-) -> tuple[FloatArray, FloatArray]:
-    """Combinations (c, r) of shapes (n, c): the part's rigid motions, if it is free, and independent ones besides.
-
-    The first 6 `patterns` of them are static shapes. All that lies beyond a free part's joints, moving as one, moves it
-    rigidly.
-    """
-    together = np.zeros((shapes.shape[1], 6))
-    together[: 6 * patterns] = np.tile(np.eye(6), (patterns, 1))
-    moved = shapes @ together
-    strained = energies(part.element.stiffness, moved) > STRAINED * energies(energy, moved)
-    if part.element.grounded or np.any(strained):
-        return together[:, :0], independent(energy, shapes)
-    overlap = shapes.T @ energy @ shapes
-    share = np.linalg.solve(together.T @ overlap @ together, together.T @ overlap)
-    others = np.eye(shapes.shape[1]) - together @ share
-    return together, others @ independent(energy, shapes @ others)
+def apart_from(energy: FloatArray, first: FloatArray, shapes: FloatArray) -> FloatArray:
+    """Combinations (k + c, r) of first shapes (n, k) and others (n, c): independent, and orthogonal to the first."""
+    columns = np.hstack([first, shapes])
+    share = np.linalg.lstsq(first.T @ energy @ first, first.T @ energy @ columns, rcond=None)[0]
+    others = np.eye(columns.shape[1])
+    others[: first.shape[1]] -= share
+    return others @ independent(energy, columns @ others)
 
 
 def energies(matrix: FloatArray, shapes: FloatArray) -> FloatArray:

@@ -19,9 +19,9 @@ class Grip:
     """The springs of a joint that meet one motion beyond it, at one end of them.
 
     end: (m, n), the motions of the part that the springs' wrenches work on, from its coordinates. beyond: (m, 6), those
-    of the other ends when the body beyond moves by a unit twist at this part's origin, in its axes. other: (m, k),
-    the same from that body's coordinates, `body`; zero and None for the ground. compliance: (m, m). nodes: of the part,
-    that they take hold of. several: whether the body beyond can deform between them.
+    of the other ends when the body beyond, or the ground, moves by a unit twist at this part's origin, in its axes.
+    other: (m, k), the same from that body's coordinates, `body`; empty and None for the ground. compliance: (m, m).
+    nodes: of the part, that they take hold of. several: whether the body beyond can deform between them.
     """
 
     end: FloatArray
@@ -56,7 +56,7 @@ def _grip(springs: Sequence[Spring], side: int, ends: Ends) -> Grip:
     twists = [spring.law.wrenches.T @ (spring.placement.inverse() * placement).toActionMatrix() for spring in springs]
     return Grip(
         end=end_motions,
-        beyond=np.zeros((len(end_motions), 6)) if grounded else np.vstack(twists),
+        beyond=np.vstack(twists),
         other=np.zeros((len(end_motions), 0)) if grounded else _motions(springs, beyond, ends),
         body=None if grounded else _body(beyond),
         compliance=block_diag(*(spring.law.compliance for spring in springs)),

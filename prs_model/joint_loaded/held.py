@@ -31,6 +31,12 @@ class Held:
         """Of each grip the stiffness (m, m) of what gives way, and the wrenches (m, r) of what is rigid."""
         return [elastic_and_rigid(grip.compliance) for grip in self.grips]
 
+    @property
+    def signature(self) -> tuple[tuple[int, int, bool], ...]:
+        """What parts must have in common for their shapes under joints to correspond."""
+        pairs = zip(self.grips, self.springs, strict=True)
+        return tuple((len(grip.end), rigid.shape[1], grip.several) for grip, (_, rigid) in pairs)
+
     @cached_property
     def stiffness(self) -> FloatArray:
         """(n, n): the part's and its springs'."""

@@ -15,7 +15,7 @@ from ..kinematics import Configuration
 from ..reduction import SuperElement, TravellingElement
 from ..reduction.from_model import AWAITS_JOINTS
 from ..reduction.gate import JOINT_LOADED
-from .basis import energy_matrix, equal_in_energy, independent, rigid_and_elastic, shapes_under_loads, static_shapes
+from .basis import apart_from, energy_matrix, equal_in_energy, independent, shapes_under_loads, static_shapes
 from .enrichment import Directions, Sight, counts, directions, patterns_beyond
 from .held import Held
 from .holding import Holding, Part
@@ -40,22 +40,30 @@ def joint_loaded_parts(
     how stiff they are matters to the shapes only, the springs themselves stay in the assembly.
     Raises PhysicsError for a travelling part that does not interpolate.
     """
-    kinds = _kinds(parts)
-    if not kinds:
+    if not any(_awaits(part) for part in parts.values()):
         return dict(parts)
     holding = Holding(description, parts, joints, configuration())
+    kinds = _kinds(holding)
     extra = _machine_shapes(holding, kinds, configuration)
     loaded = {name: _loaded(holding, name, extra[kind]) for kind in kinds for name in kind}
     return {name: loaded.get(name, part) for name, part in parts.items()}
 
 
-def _kinds(parts: Mapping[str, Part]) -> list[Kind]:
-    """The bodies whose parts await their joints, those with the same part together."""
-    kinds: dict[int, list[str]] = {}
-    for name, part in parts.items():
-        first = part if isinstance(part, SuperElement) else part.elements[0]
-        if first.provenance.get("basis") == AWAITS_JOINTS:
-            kinds.setdefault(id(first), []).append(name)
+def _awaits(part: Part) -> bool:
+    return _first(part).provenance.get("basis") == AWAITS_JOINTS
+
+
+def _first(part: Part) -> SuperElement:
+    return part if isinstance(part, SuperElement) else part.elements[0]
+
+
+def _kinds(holding: Holding) -> list[Kind]:
+    """The bodies whose parts await their joints; those with one part, one number of modes and like joints together."""
+    kinds: dict[tuple[object, ...], list[str]] = {}
+    for name, part in holding.parts.items():
+        if _awaits(part):
+            grips = holding.held(name, holding.reference).signature
+            kinds.setdefault((id(_first(part)), holding.description.bodies[name].modes, *grips), []).append(name)
     return [tuple(names) for names in kinds.values()]
 
 
@@ -117,9 +125,14 @@ def _loaded(holding: Holding, name: str, extra: Shapes) -> Part:
     held = holding.held(name, holding.reference)
     static = static_shapes(held)
     energy = energy_matrix(held, static)
-    columns = np.hstack([static, held.still, shapes_under_loads(held), extra(held)])
-    columns = columns * equal_in_energy(energy, columns, len(held.grips))
+    others = np.hstack([_rigid(part), held.still, shapes_under_loads(held), extra(held)])
+    columns = np.hstack([static, others]) * equal_in_energy(energy, static, others)
     return _in_shapes(part, columns @ independent(energy, columns))
+
+
+def _rigid(element: SuperElement) -> FloatArray:
+    """(n, 6): the rigid motions of a free part; of one that is held none."""
+    return np.zeros((element.size, 0)) if element.grounded else element.rigid_body_modes()
 
 
 def _travelling(part: TravellingElement, stations: Sequence[Held], extra: Shapes) -> TravellingElement:
@@ -128,17 +141,20 @@ def _travelling(part: TravellingElement, stations: Sequence[Held], extra: Shapes
     A free part's rigid motions come first: they strain nothing, and the stiffness of the rest is positive definite, and
     interpolated so that it stays so.
     """
-    columns = [np.hstack([static_shapes(held), shapes_under_loads(held), extra(held)]) for held in stations]
-    middle, patterns = len(stations) // 2, len(stations[0].grips)
-    energy = energy_matrix(stations[middle], static_shapes(stations[middle]))
-    size = equal_in_energy(energy, columns[middle], patterns)
-    rigid, elastic = rigid_and_elastic(stations[middle], energy, columns[middle] * size, patterns)
-    bases = [each * size @ np.hstack([rigid, elastic]) for each in columns]
+    rigid = [_rigid(held.element) for held in stations]
+    static = [static_shapes(held) for held in stations]
+    others = [np.hstack([shapes_under_loads(held), extra(held)]) for held in stations]
+    middle = len(stations) // 2
+    energy = energy_matrix(stations[middle], static[middle])
+    size = equal_in_energy(energy, static[middle], others[middle])
+    shapes = [np.hstack(pair) * size for pair in zip(static, others, strict=True)]
+    strained = apart_from(energy, rigid[middle], shapes[middle])
+    bases = [np.hstack([first, np.hstack([first, rest]) @ strained]) for first, rest in zip(rigid, shapes, strict=True)]
     elements = tuple(_in_shapes(element, basis) for element, basis in zip(part.elements, bases, strict=True))
     if (products := part.products) is not None:
         products = np.einsum("iab,ijac,jcd->ijbd", bases, products, bases, optimize=True)
-    strained = tuple(range(rigid.shape[1], bases[0].shape[1]))
-    loaded = replace(part, elements=elements, products=products, contact=strained)
+    contact = tuple(range(rigid[0].shape[1], bases[0].shape[1]))
+    loaded = replace(part, elements=elements, products=products, contact=contact)
     loaded.check()
     return loaded
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tests.verification.gantry import gantry
+from tests.verification.gantry import SIZES, gantry
 
 POSES = ({}, {"x": 0.45, "phi": 0.8}, {"x": 0.3, "y": -0.05, "phi": -0.6})
 AVERAGED = {"reduction": {"method": "joint-loaded", "modes": 3}}
@@ -97,3 +97,32 @@ def test_joint_data_may_change_without_stale_shapes(machine):
         error = changed.modes(8).frequencies / exact - 1.0
         assert error.min() > -1e-8
         assert error.max() < 0.01
+
+
+FOUNDATION = {
+    "frame": "column",
+    "between": ["ground", "column.foot"],
+    "stiffness": {"ux": 6e8, "uy": 6e8, "uz": 9e8, "rx": 8e6, "ry": 8e6, "rz": 8e6},
+}
+FOOT = {"joints.foundation": FOUNDATION, "bodies.column.clamped": [], "bodies.column.grounded": False}
+
+
+@pytest.mark.parametrize("count", [0, 3])
+def test_a_body_that_a_joint_holds_to_the_ground_keeps_its_mass(machine, count):
+    standing = machine.replace({**FOOT, "bodies.column.interfaces.foot": {"set": "z0"}, "reduction.modes": count})
+    assert standing.parts["column"].mass_properties().mass == pytest.approx(
+        np.prod(SIZES["column"][0]) * 7850.0, rel=1e-6
+    )
+    exact = standing.complete_order("averaged").modes(standing.configuration(), 8).frequencies
+    error = standing.modes(8).frequencies / exact - 1.0
+    assert error.min() > -1e-8
+    assert error.max() < 0.05
+
+
+def test_modes_of_one_body_are_taken_exactly(machine):
+    sizes = {
+        count: machine.replace({"reduction.modes": 0, "bodies.arm.modes": count}).parts["arm"].size
+        for count in (0, 2, 5)
+    }
+    assert sizes[2] - sizes[0] == 2
+    assert sizes[5] - sizes[0] == 5
