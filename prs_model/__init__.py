@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from .modes.mac import mac
     from .plugins import PartRequest, Reducer, list_machines, list_reducers
     from .reduction import SuperElement, TravellingElement, export, read_part, reduce
+    from .report import write_report
     from .synthesis import System
     from .verification import VerificationReport, verify
 
@@ -56,6 +57,7 @@ _LAZY = {
     "read_part": "reduction",
     "reduce": "reduction",
     "verify": "verification",
+    "write_report": "report",
 }
 
 __all__ = [
@@ -90,6 +92,7 @@ __all__ = [
     "read_part",
     "reduce",
     "verify",
+    "write_report",
 ]
 
 

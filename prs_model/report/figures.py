@@ -1,0 +1,170 @@
+"""The figures of one pose, for the page and as files: lines, marks and hatches that can be told apart in grey."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..modes.energy import Energies
+from ..modes.figure_file import write_figure
+from ..modes.mac import mac
+from ..response.picture import matplotlib_figure
+from .study import Study
+
+_HATCHES = ("", "//", "\\\\", "xx", "--", "||", "++", "////", "\\\\\\\\", "xxxx")
+_GREYS = ("#31688e", "#bcd35f", "#440154", "#f4d06f", "#35b779", "#e8e8e8", "#7a5195", "#c9a227", "#8fb8de", "#555555")
+_LINES = ("-", "--", ":")
+
+
+@dataclass(frozen=True)
+class Figure:
+    """Name of its files without suffix, what it shows, and the same in words for those who cannot see it."""
+
+    name: str
+    caption: str
+    words: str
+
+
+def draw_figures(study: Study, first: Study, folder: Path) -> tuple[Figure, ...]:
+    """Draw everything of a pose as SVG and PNG into a folder. first: the pose that shapes are compared with."""
+    drawn = [_energy(study, folder, *each) for each in _energies(study)]
+    drawn += [_weak_energy(study, folder, *each) for each in _energies(study)]
+    if study.at_rest is not None:
+        drawn.insert(0, _flexibility(study, folder))
+    if study.response is not None:
+        drawn.insert(0, _frf(study, folder))
+    return (*drawn, _mac(study, first, folder))
+
+
+def _energies(study: Study) -> tuple[tuple[str, Energies], ...]:
+    return ("kinetic", study.modes.kinetic_energy()), ("strain", study.modes.strain_energy())
+
+
+def _save(figure: Any, folder: Path, drawn: Figure) -> Figure:
+    for suffix in ("svg", "png"):
+        write_figure(figure, folder / f"{drawn.name}.{suffix}")
+    return drawn
+
+
+def _frf(study: Study, folder: Path) -> Figure:
+    """Figure 11 of the paper: magnitude and phase along u, v, w."""
+    response = study.response
+    assert response is not None
+    figure = matplotlib_figure()(figsize=(7.2, 4.6), layout="constrained")
+    upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
+    peaks = []
+    for axis, line in zip("uvw", _LINES, strict=True):
+        curve = response.curve(axis)
+        upper.semilogy(response.frequencies, 1e6 * np.abs(curve), line, label=axis, linewidth=1.5)
+        lower.plot(response.frequencies, np.degrees(np.angle(curve)), line, linewidth=1.2)
+        top = int(np.argmax(np.abs(curve)))
+        peaks.append(f"along {axis} {1e6 * abs(curve[top]):.3g} um/N at {response.frequencies[top]:.1f} Hz")
+    upper.set_ylabel("receptance / (µm/N)")
+    upper.legend(title="response and force along", ncols=3, fontsize=8, title_fontsize=8)
+    lower.set(xlabel="frequency / Hz", ylabel="phase / deg", ylim=(-190, 190), yticks=(-180, -90, 0, 90, 180))
+    for axes in (upper, lower):
+        axes.grid(True, alpha=0.3)
+    caption = "Frequency response of the end-reference point along u, v, w."
+    return _save(figure, folder, Figure("frf", caption, f"{caption} Largest: {'; '.join(peaks)}."))
+
+
+def _flexibility(study: Study, folder: Path) -> Figure:
+    """Figure 15 of the paper: what each mode gives to the static compliance."""
+    assert study.at_rest is not None
+    shares = 100.0 * study.at_rest.shares[:, :3]
+    figure = matplotlib_figure()(figsize=(7.2, 3.2), layout="constrained")
+    axes = figure.subplots()
+    numbers = np.arange(1.0, len(shares) + 1)
+    for k, direction in enumerate("uvw"):
+        _bars(axes, numbers + 0.27 * (k - 1), shares[:, k], 0.25, k, f"along {direction}")
+    axes.set(xlabel="mode", ylabel="share of the static compliance / %", xticks=numbers)
+    axes.legend(fontsize=8)
+    tops = [
+        f"along {d} mode {np.argmax(shares[:, k]) + 1} with {shares[:, k].max():.1f} %" for k, d in enumerate("uvw")
+    ]
+    caption = "Contribution of each mode to the static compliance of the end-reference point."
+    return _save(figure, folder, Figure("flexibility", caption, f"{caption} Largest: {'; '.join(tops)}."))
+
+
+def _energy(study: Study, folder: Path, kind: str, energy: Energies) -> Figure:
+    """All modes, like parts together."""
+    groups = _by_kind(energy, study.modes.system.stems)
+    count = len(study.modes.frequencies)
+    figure = matplotlib_figure()(figsize=(7.2, 3.4), layout="constrained")
+    axes = figure.subplots()
+    numbers, base = np.arange(1.0, count + 1), np.zeros(count)
+    for k, (name, share) in enumerate(groups.items()):
+        _bars(axes, numbers, 100.0 * share, 0.7, k, name, base)
+        base = base + 100.0 * share
+    axes.set(xlabel="mode", ylabel=f"share of the {kind} energy / %", xticks=numbers, ylim=(0.0, 100.0))
+    _legend(axes)
+    tops = [f"mode {k + 1} {max(groups, key=lambda name: groups[name][k])}" for k in range(count)]
+    caption = f"Where the {kind} energy of each mode is, like parts together."
+    return _save(figure, folder, Figure(f"{kind}_energy", caption, f"{caption} Most of it in: {', '.join(tops)}."))
+
+
+def _weak_energy(study: Study, folder: Path, kind: str, energy: Energies) -> Figure:
+    """Figures 16 and 17 of the paper: the first two modes, limb by limb."""
+    count = min(2, len(study.modes.frequencies))
+    figure = matplotlib_figure()(figsize=(7.2, 3.4), layout="constrained")
+    panels = figure.subplots(1, count, squeeze=False, sharey=True)[0]
+    limbs, stems = study.modes.system.limbs, study.modes.system.stems
+    places = list(dict.fromkeys(limbs.get(name, name) for name in energy))
+    kinds = list(dict.fromkeys(stems.get(name, name) for name in energy))
+    for mode, axes in enumerate(panels):
+        table = np.zeros((len(kinds), len(places)))
+        for name, share in energy.items():
+            table[kinds.index(stems.get(name, name)), places.index(limbs.get(name, name))] += 100.0 * share[mode]
+        base = np.zeros(len(places))
+        for k, (name, row) in enumerate(zip(kinds, table, strict=True)):
+            _bars(axes, np.arange(float(len(places))), row, 0.7, k, name, base)
+            base = base + row
+        axes.set_title(f"mode {mode + 1}: {study.modes.frequencies[mode]:.1f} Hz", fontsize=9)
+        axes.set_xticks(range(len(places)), places, rotation=30, ha="right", fontsize=8)
+    panels[0].set_ylabel(f"share of the {kind} energy / %")
+    _legend(panels[-1])
+    caption = f"Distribution of the {kind} energy of the first modes over limbs and parts."
+    return _save(figure, folder, Figure(f"{kind}_energy_by_limb", caption, f"{caption} The numbers are in the tables."))
+
+
+def _mac(study: Study, first: Study, folder: Path) -> Figure:
+    """Of the pose with itself, or with the first pose."""
+    matrix = mac(first.modes, study.modes)
+    same = study is first
+    figure = matplotlib_figure()(figsize=(4.6, 3.9), layout="constrained")
+    axes = figure.subplots()
+    image = axes.imshow(matrix, cmap="Blues", vmin=0.0, vmax=1.0)
+    for (i, j), value in np.ndenumerate(matrix):
+        axes.text(j, i, f"{value:.2f}", ha="center", va="center", fontsize=7, color="white" if value > 0.6 else "black")
+    axes.set_xticks(range(matrix.shape[1]), [str(k + 1) for k in range(matrix.shape[1])])
+    axes.set_yticks(range(matrix.shape[0]), [str(k + 1) for k in range(matrix.shape[0])])
+    axes.set(xlabel="mode" if same else "mode at this pose", ylabel="mode" if same else "mode at the first pose")
+    figure.colorbar(image, label="MAC")
+    what = "of the modes with each other: what is not on the diagonal shows shapes alike at the points seen"
+    caption = f"MAC {what}." if same else "MAC with the modes of the first pose."
+    return _save(figure, folder, Figure("mac", caption, f"{caption} The numbers are in mac.csv."))
+
+
+def _bars(
+    axes: Any, places: FloatArray, heights: FloatArray, width: float, k: int, label: str, base: FloatArray | float = 0.0
+) -> None:
+    style = {"edgecolor": "black", "linewidth": 0.5, "hatch": _HATCHES[k % 10], "color": _GREYS[k % 10]}
+    axes.bar(places, heights, width, bottom=base, label=label, **style)
+    axes.grid(True, axis="y", alpha=0.3)
+    axes.set_axisbelow(True)
+
+
+def _legend(axes: Any) -> None:
+    axes.legend(fontsize=8, loc="center left", bbox_to_anchor=(1.0, 0.5))
+
+
+def _by_kind(energy: Energies, stems: Mapping[str, str]) -> Energies:
+    groups: Energies = {}
+    for name, share in energy.items():
+        groups[stems.get(name, name)] = groups.get(stems.get(name, name), 0.0) + share
+    return groups

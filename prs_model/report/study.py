@@ -1,0 +1,102 @@
+"""Everything the report shows of one pose."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..readable import pose_text, readable, readable_range
+from ..response.damping import damping_of, is_proportional, modal_ratios
+
+if TYPE_CHECKING:
+    from ..description.schema import Damping
+    from ..machine import Machine
+    from ..modes import Modes
+    from ..response import FrequencyResponse, WeakMode
+
+_LINES = 1000
+
+
+@dataclass(frozen=True, eq=False)
+class AtRest:
+    """Of a machine that is held: compliance (6, 6) of the end-reference point, what each mode gives to it (k, 6)
+    [m/N, rad/(N m)], the same as shares of the compliance, and the weak modes."""
+
+    compliance: FloatArray
+    flexibility: FloatArray
+    shares: FloatArray
+    weak: tuple[WeakMode, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Study:
+    """One pose [m, rad], numbered from 1: its modes, their damping ratios (k,), how the end-reference point answers.
+
+    at_rest and response are None where the machine can move without straining anything, or nothing oscillates.
+    ratios are None where joints damp, so that the modes are complex.
+    """
+
+    number: int
+    pose: Mapping[str, float]
+    text: str
+    modes: Modes
+    damping: Damping
+    ratios: FloatArray | None
+    at_rest: AtRest | None
+    response: FrequencyResponse | None
+
+    @property
+    def folder(self) -> str:
+        """Name of the pose's folder."""
+        return f"pose_{self.number}"
+
+
+def study(machine: Machine, pose: Mapping[str, float], number: int, count: int, damping: object = None) -> Study:
+    """Solve one pose for so many modes. The response is of all modes, whatever the count.
+
+    damping: as in Modes.frf. Raises UnreachablePoseError, or PrsError for damping that makes no sense.
+    """
+    configuration = machine.configuration(**pose)
+    system = machine.assemble(configuration)
+    modes = system.modes(count)
+    model = damping_of(system, damping)  # type: ignore[arg-type]  # whatever else is refused in words
+    return Study(
+        number=number,
+        pose=configuration.pose,
+        text=pose_text(configuration.pose, machine.kinematics.task.coordinates) or "the only pose",
+        modes=modes,
+        damping=model,
+        ratios=modal_ratios(model, modes.eigenvalues) if is_proportional(model) else None,
+        at_rest=_at_rest(modes),
+        response=_response(modes, model),
+    )
+
+
+def _at_rest(modes: Modes) -> AtRest | None:
+    if modes.is_rigid.any():
+        return None
+    shares = modes.flexibility_shares()
+    return AtRest(modes.static_compliance(), modes.modal_flexibility(), shares, modes.weak_modes())
+
+
+def _response(modes: Modes, damping: Damping) -> FrequencyResponse | None:
+    elastic = modes.frequencies[modes.frequencies > 0.0]
+    if not elastic.size:
+        return None
+    frequencies = np.linspace(0.1 * elastic[0], 1.25 * elastic[-1], _LINES)
+    return modes.system.modes(modes.system.size).frequency_response(frequencies, damping)
+
+
+def outside_workspace(machine: Machine, pose: Mapping[str, float]) -> tuple[str, ...]:
+    """A sentence for each coordinate of a pose [m, rad] that lies beyond the stated workspace."""
+    kinds, slack = machine.kinematics.task.coordinates, 1e-9
+    return tuple(
+        f"pose {pose_text(pose, kinds)} is outside the stated workspace: {name} {readable(pose[name], kinds[name])}, "
+        f"workspace {readable_range(low, high, kinds[name])}"
+        for name, (low, high) in machine.workspace.items()
+        if not low - slack <= pose[name] <= high + slack
+    )
