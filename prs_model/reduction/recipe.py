@@ -36,9 +36,9 @@ def recipe(body: Body, options: Section, settings: Settings, reducer_version: in
 
 
 def _are_modes_stored(body: Body, settings: Settings) -> bool:
-    """The modes of joint-loaded parts are found when the machine is loaded, but for those whose contact travels."""
-    travels = any(interface.travel is not None for interface in body.interfaces.values())
-    return settings.method == "craig-bampton" or travels
+    """Joint-loaded parts are stored without; a contact with a node per station does not await joints, though."""
+    travels = [interface.travel for interface in body.interfaces.values() if interface.travel is not None]
+    return settings.method == "craig-bampton" or any(travel.method == "stations" for travel in travels)
 
 
 def fingerprint(text: str) -> str:
