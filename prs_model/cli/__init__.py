@@ -12,9 +12,9 @@ from typing import Any
 
 from .. import __version__
 from ..errors import PrsError, short
-from . import frf, machines, modes, reduce, reducers, report, streams, validate, verify
+from . import explore, frf, machines, modes, reduce, reducers, report, streams, validate, verify
 
-_COMMANDS = (modes, frf, report, verify, reduce, validate, machines, reducers)
+_COMMANDS = (modes, frf, report, explore, verify, reduce, validate, machines, reducers)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
