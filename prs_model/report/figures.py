@@ -46,6 +46,8 @@ def _energies(study: Study) -> tuple[tuple[str, Energies], ...]:
 
 
 def _save(figure: Any, folder: Path, drawn: Figure) -> Figure:
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")  # laid out once is enough
     for suffix in ("svg", "png"):
         write_figure(figure, folder / f"{drawn.name}.{suffix}")
     return drawn

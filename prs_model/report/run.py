@@ -51,7 +51,8 @@ def write_report(
     with _warnings_logged() as warnings:
         studies = [study(machine, pose, number, count, damping) for number, pose in enumerate(poses, start=1)]
         parts, said = parts_of(machine)
-        outside = [text for each in studies for text in outside_workspace(machine, each.pose)]
+    outside = [text for each in studies for text in outside_workspace(machine, each.pose)]
+    standing = (*machine.loose_bodies(), *machine.wide_joints(), *said)
     made = tuple(_pose(each, studies[0], folder) for each in studies)
     content = Content(
         machine=machine,
@@ -60,12 +61,13 @@ def write_report(
         joints=joints_of(machine),
         entries=entries(machine.description),
         mass=moving_mass(machine),
-        warnings=tuple(dict.fromkeys([*warnings, *said, *outside])),
+        warnings=tuple(dict.fromkeys([*warnings, *standing, *outside])),
         published=_published(machine, studies[0]),
         command=command,
     )
+    beside = _beside(content, folder)
     write_text(folder / PAGE, page(content, folder))
-    return (folder / PAGE, *(folder / name for name in _beside(content, folder)))
+    return (folder / PAGE, *(folder / name for name in beside))
 
 
 def check_folder(folder: Path) -> None:

@@ -24,8 +24,10 @@ def draw_still(study: Study, scene: Scene, path: Path) -> None:
     """Draw every mode of a pose, displaced, coloured by displacement; what is grounded can be seen through."""
     count = len(study.modes.frequencies)
     columns = min(count, 4)
-    figure = matplotlib_figure()(figsize=(2.6 * columns, 2.9 * ceil(count / columns) + 0.3), layout="constrained")
-    panels = figure.subplots(ceil(count / columns), columns, squeeze=False).ravel()
+    rows = ceil(count / columns)
+    figure = matplotlib_figure()(figsize=(2.6 * columns, 3.1 * rows))
+    figure.subplots_adjust(left=0.0, right=1.0, bottom=0.01, top=1.0 - 0.14 / rows, wspace=0.02, hspace=0.18)
+    panels = figure.subplots(rows, columns, squeeze=False).ravel()
     for axes in panels:
         axes.set_axis_off()
     for mode, (axes, character) in enumerate(zip(panels, study.modes.characters(), strict=False)):

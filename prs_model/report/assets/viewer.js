@@ -123,7 +123,7 @@ const Viewer = (() => {
 
     function look(name) {
       const [yaw, pitch] = VIEWS[name];
-      state.view = { yaw, pitch, distance: 2.2 * scene.size, target: [...scene.centre] };
+      state.view = { yaw, pitch, distance: 2.35 * scene.size, target: [...scene.centre] };
     }
 
     function turn(right, up) {

@@ -1,0 +1,97 @@
+"""What stands in the folder of a report: the library's numbers, and nothing that needs a network."""
+
+import csv
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import prs_model as prs
+from prs_model.report.sources import entries
+
+
+def table(path: Path) -> list[list[str]]:
+    return list(csv.reader(path.read_text(encoding="utf-8").splitlines()))
+
+
+def test_tables_are_those_of_the_library(hexapod: Path) -> None:
+    modes = prs.load_machine("hexapod").modes(8, z=0.0935)
+    folder = hexapod / "pose_2"
+    rows = table(folder / "modes.csv")
+    assert [float(row[1]) for row in rows[1:]] == pytest.approx(modes.frequencies)
+    assert [float(row[2]) for row in rows[1:]] == [0.02] * 6
+    compliance = np.array([row[1:7] for row in table(folder / "compliance.csv")[1:]], dtype=float)
+    assert compliance == pytest.approx(modes.static_compliance())
+    energies = np.array([row[1:] for row in table(folder / "strain_energy.csv")[1:]], dtype=float)
+    assert energies.sum(axis=0) == pytest.approx(np.ones(6))
+    frf = np.array(table(folder / "frf.csv")[1:], dtype=float)
+    assert frf[:, 1] + 1j * frf[:, 2] == pytest.approx(modes.frf(frf[:, 0], 0.02)[:, 0, 0])
+
+
+def test_results_hold_all_poses(hexapod: Path) -> None:
+    results = json.loads((hexapod / "results.json").read_text(encoding="utf-8"))
+    assert [pose["pose"]["z"] for pose in results["poses"]] == pytest.approx([0.09, 0.0935])
+    first = prs.load_machine("hexapod").modes(8)
+    assert results["poses"][0]["frequencies_hz"] == pytest.approx(first.frequencies)
+    assert results["poses"][0]["weak_modes"] == [str(each) for each in first.weak_modes()]
+
+
+@pytest.mark.parametrize("name", ["head", "hexapod"])
+def test_page_is_alone_and_light(name: str, request: pytest.FixtureRequest) -> None:
+    page = request.getfixturevalue(name) / "report.html"
+    text = page.read_text(encoding="utf-8")
+    assert page.stat().st_size < 10e6
+    assert not re.findall(r"(?:src|href)=\"(?:https?:)?//", text)
+    for link in re.findall(r"href=\"([^\"#:]+)\"", text):
+        assert (page.parent / link).is_file(), link
+    images = re.findall(r"<img [^>]*>", text)
+    assert images
+    assert all(re.search(r"alt=\"[^\"]{20,}\"", image) for image in images)
+
+
+def test_every_number_of_a_joint_has_its_source() -> None:
+    found = {entry.place: entry for entry in entries(prs.load_machine("hexapod").description)}
+    drive = found["joints.P.drive.stiffness"]
+    assert (drive.value, drive.unit, drive.source) == ("2e+07", "N/m", "paper")
+    assert found["joints.S.stages.1"].value == "rigid"
+    assert found["bodies.platform.options.mass"].unit == "kg"
+    assert found["bodies.platform.options.centre"].source == "assumed"
+    law = {entry.place: entry for entry in entries(prs.load_machine("head_3prs").description)}
+    assert law["joints.seat.stiffness.ux"].unit == "N/mm"
+    assert law["joints.seat.stiffness.rz"].source == law["joints.seat.stiffness.ux"].source != ""
+
+
+def test_warnings_are_told(hexapod: Path) -> None:
+    text = (hexapod / "report.html").read_text(encoding="utf-8")
+    assert "outside the stated workspace: z 93.5 mm, workspace 87 .. 93 mm" in text
+
+
+def test_machine_that_can_move_freely(tmp_path: Path) -> None:
+    """No compliance, no response, no strain energy; a sentence in their place, and the shapes of the free motions."""
+    pytest.importorskip("jinja2")
+    pytest.importorskip("matplotlib")
+    machine = prs.load_machine("hexapod").replace({"joints.P.drive": None})
+    files = prs.write_report(machine, tmp_path / "report", damping=0.02)
+    names = {path.name for path in files}
+    assert "mode_6.glb" in names
+    assert names.isdisjoint({"compliance.csv", "flexibility.svg", "frf.csv", "frf.svg"})
+    assert "The machine can move without straining anything" in files[0].read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("poses", "damping", "words"),
+    [
+        ([], None, "found no pose"),
+        ([{}], 1.5, "found 1.5, expected a ratio below 1"),
+        ([{"height": 1.0}], None, "height"),
+        ([{"z": 9.0}], None, "z"),
+    ],
+)
+def test_wrong_input_makes_no_page(poses: list[dict[str, float]], damping: float, words: str, tmp_path: Path) -> None:
+    pytest.importorskip("jinja2")
+    pytest.importorskip("matplotlib")
+    with pytest.raises(prs.PrsError, match=words):
+        prs.write_report(prs.load_machine("hexapod"), tmp_path / "new", poses, damping=damping)
+    assert not list(tmp_path.rglob("*.html"))
