@@ -70,10 +70,8 @@ def wide_joints(
     ends = ends_of(description, parts, configuration)
     points = np.vstack([ends.placements[name].act(r) for name, e in ends.elements.items() for r in e.positions])
     size = float(np.max(np.ptp(points.reshape(-1, 3), axis=0)))
-    gaps: dict[str, float] = {}
-    for joint in joints:
-        for spring in joint.springs(configuration.joint_values, configuration.placement):
-            gaps[joint.name] = max(gaps.get(joint.name, 0.0), ends.gap(spring))
+    springs = {joint.name: joint.springs(configuration.joint_values, configuration.placement) for joint in joints}
+    gaps = {name: ends.gap(each) for name, each in springs.items() if each}
     return {name: gap for name, gap in gaps.items() if gap > share * size}
 
 

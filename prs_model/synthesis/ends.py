@@ -45,11 +45,22 @@ class Ends:
         np.add.at(size, place, np.abs(np.hstack([each for _, _, each in motions])).T)
         return RelativeDisplacement(rows, motion.T, size.T)
 
-    def gap(self, spring: Spring) -> float:
-        """Distance [m] between the nodes at which the spring's ends are read; of a grounded one, from its place."""
-        points = [self.position(end, spring.interface) for end in spring.between if end != "ground"]
-        other = points[1] if len(points) == 2 else np.asarray(spring.placement.translation)
-        return float(np.linalg.norm(points[0] - other))
+    def gap(self, springs: Sequence[Spring]) -> float:
+        """Distance [m] between the nodes at which the ends of a joint's springs are read; the ground's is their place.
+
+        The largest of all springs; where one end has fewer nodes than the other, that between the means of the nodes.
+        """
+        (here, nodes), (there, others) = (self._places(springs, side) for side in (0, 1))
+        apart = here - there if nodes == others else np.mean(here - there, axis=0, keepdims=True)
+        return float(np.linalg.norm(apart, axis=1).max())
+
+    def _places(self, springs: Sequence[Spring], side: int) -> tuple[FloatArray, int]:
+        """Where one end of each spring is read (s, 3) [m], and at how many different nodes, or sets of them."""
+        ends = [(spring.between[side], spring.interface) for spring in springs]
+        if ends[0][0] == "ground":
+            return np.array([spring.placement.translation for spring in springs]), len(set(ends))
+        places = np.array([self.position(end, interface) for end, interface in ends])
+        return places, len({tuple(self.nodes(end, interface)) for end, interface in ends})
 
     def position(self, end: str, interface: str | None = None) -> FloatArray:
         """Where the node stands at which an end is read (3,) [m], in the world."""
@@ -60,10 +71,7 @@ class Ends:
 
     def output(self, output: Output, frame: pin.SE3) -> tuple[pin.SE3, IntArray, FloatArray]:
         """Where the end-reference point stands, with the axes of the output frame; rows (k,) and its motion (6, k)."""
-        body, node = output.node.split(".", 1)
-        element = self.elements[body]
-        position = self.placements[body].act(element.positions[element.node(node)])
-        place = pin.SE3(frame.rotation, position)
+        place = pin.SE3(frame.rotation, self.position(output.node))
         return place, *self.motion(output.node, None, place)
 
     def motion(self, end: str, interface: str | None, place: pin.SE3) -> tuple[IntArray, FloatArray]:
@@ -76,13 +84,16 @@ class Ends:
         return np.arange(block.start, block.stop), np.asarray(motion)
 
     def nodes(self, end: str, interface: str | None) -> Sequence[int]:
-        """The interface's own node, else the joint's, else all of the joint's interfaces (their mean is taken)."""
+        """The interface's own node, else the joint's, else all of the joint's interfaces (their mean is taken).
+
+        Nodes at stations (``rail.left@2``) are none of them: the travelling node stands among these under its own name.
+        """
         body, node = end.split(".", 1)
         names = self.elements[body].nodes
         for name in (f"{node}.{interface}", node):
             if name in names:
                 return [names.index(name)]
-        found = [k for k, name in enumerate(names) if name.startswith(f"{node}.")]
+        found = [k for k, name in enumerate(names) if name.startswith(f"{node}.") and "@" not in name]
         if not found:
             raise UnknownNameError(f"node of {self.elements[body].name}", node, names)
         return found

@@ -1,6 +1,7 @@
 """Joints where they need not be: inside a rigid body, missing, or holding nothing."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pinocchio as pin
@@ -10,6 +11,7 @@ import prs_model as prs
 from prs_model.joints import along_axes
 from prs_model.joints.springs import ElasticJoint, ElasticStage, Side
 from prs_model.synthesis import System, assemble, wide_joints
+from tests.verification.gantry import TRAVEL, gantry
 
 
 @pytest.fixture(scope="module")
@@ -51,3 +53,26 @@ def test_ends_that_lie_apart_are_told(hexapod: prs.Machine) -> None:
     moved = hexapod.replace({"bodies.platform.options.nodes.joint_2": (0.0578, 0.0689, 0.065)})
     for machine, expected in ((hexapod, {}), (moved, {"S_2": pytest.approx(0.08, rel=1e-2)})):
         assert wide_joints(machine.description, machine.parts, machine.joints, machine.configuration()) == expected
+
+
+def test_ends_tied_in_two_ways_are_not_apart(tmp_path: Path) -> None:
+    """One body has a node for each of two places 150 mm apart, the other one node: that is no fault of the file."""
+    apart = {"reduction.tie": "interface", "bodies.table.tie": "joint"}
+    tied = gantry(tmp_path).replace(apart)
+    assert not wide_joints(tied.description, tied.parts, tied.joints, tied.configuration())
+    moved = tied.replace({"bodies.table.interfaces.rail.at": [0.125, 0.09, 0.0]})
+    found = wide_joints(moved.description, moved.parts, moved.joints, moved.configuration())
+    assert found == {"X": pytest.approx(0.04, rel=0.01)}
+
+
+def test_a_drive_takes_hold_where_the_contact_is(tmp_path: Path) -> None:
+    """With nodes at all stations, at one of them: a subspace of the complete order, with nothing softened."""
+    machine = gantry(tmp_path, travel=TRAVEL).replace(
+        {
+            "reduction.tie": "interface",
+            "reduction.coupling": "averaged",
+            "bodies.column.interfaces.rail.travel.method": "stations",
+        }
+    )
+    complete = machine.complete_order().modes(machine.configuration(x=0.445), 6).frequencies
+    assert np.all(machine.modes(6, x=0.445).frequencies > complete * (1.0 - 1e-8))
