@@ -7,20 +7,20 @@ import logging
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from .. import plugins
 from ..arrays import FloatArray
-from ..description import MachineDescription
 from ..errors import PartFileError
 from ..kinematics import Configuration
-from ..reduction.recipe import Settings, file_hash, fingerprint, recipe
+from ..reduction.recipe import file_hash, fingerprint
 from ..reduction.request import asked
+from ..reduction.stations import SAME
 from ..reduction.storage import load_super_element, save, whole
 from ..reduction.store import files_hash
 from ..reduction.super_element import SuperElement
+from .stock import Stock
 
 VERSION = 1  # raised when the complete order changes its results
 FIGURES = "modes.json"
@@ -83,30 +83,30 @@ class Kept:
             logger.warning("%s: not kept: %s", self.folder, error)
 
 
-def kept(folder: Path, description: MachineDescription, settings: Settings, where: Configuration, count: int) -> Kept:
+def kept(folder: Path, stock: Stock, where: Configuration, count: int) -> Kept:
     """Where the `count` lowest modes in a configuration are kept. Raises what asking for a part raises."""
-    stems = {description.stems[name]: name for name in description.bodies}
+    description = stock.description
+    parts = {kind: name for name, kind in stock.kinds.items()}
     content = {
         "version": VERSION,
         "count": count,
-        "parts": {stem: _part(stem, name, description, settings) for stem, name in stems.items()},
-        "bodies": {name: [description.stems[name], body.frame] for name, body in description.bodies.items()},
+        "parts": {name: [kind.recipe, _files(name, stock)] for kind, name in parts.items()},
+        "bodies": {name: [parts[kind], stock.bodies[name].frame] for name, kind in stock.kinds.items()},
         "joints": {name: joint.model_dump(mode="json") for name, joint in description.joints.items()},
-        "travel": {name: body.model_dump(mode="json")["interfaces"] for name, body in description.bodies.items()},
+        "travel": {name: body.model_dump(mode="json")["interfaces"] for name, body in stock.bodies.items()},
         "output": description.file.output.model_dump(mode="json"),
         "urdf": file_hash(description.urdf_path),
-        "at": {name: round(value, 9) for name, value in where.joint_values.items()},
+        "at": {name: round(value, SAME) for name, value in where.joint_values.items()},
     }
     text = json.dumps(content, sort_keys=True, separators=(",", ":"))
     return Kept(folder / f"complete-{fingerprint(text)}", text)
 
 
-def _part(stem: str, name: str, description: MachineDescription, settings: Settings) -> list[Any]:
-    """The recipe of a part and its files' content."""
-    body = description.bodies[name]
-    reducer, request = asked(stem, body, description.folder)
+def _files(name: str, stock: Stock) -> str | None:
+    """The content of the files that a body is read from."""
+    body = stock.bodies[name]
+    reducer, request = asked(stock.kinds[name].stem, body, stock.description.folder)
     if request.source is None:
-        return [recipe(body, request.options, settings, reducer.version)]
+        return None
     with plugins.reading(body.reducer, request):
-        files = reducer.files(request)
-    return [recipe(body, request.options, settings, reducer.version), files_hash(files)]
+        return files_hash(reducer.files(request))

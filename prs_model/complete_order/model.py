@@ -51,8 +51,10 @@ class CompleteModes:
 class CompleteOrder:
     """The full finite-element model of a machine's assembly, with the interfaces of joints averaged or rigid.
 
-    Parts are read and factorized when first needed, each kind once. Every interface has nodes of its own, also where
-    the machine's reduction ties several to one. cache: a folder where solved poses are kept by their content.
+    Parts are read and factorized when first needed, each kind once; travelling ones with rigid interfaces anew for
+    every stroke. Every member of an interface has a node of its own, also where the machine's reduction, or the
+    interface's `tie`, has one for several; an interface's own `coupling` is kept. cache: a folder where solved poses
+    are kept by their content.
     """
 
     def __init__(
@@ -86,7 +88,7 @@ class CompleteOrder:
 
     def _found(self, configuration: Configuration, count: int) -> Solved:
         """The modes out of the cache, where they are put if they were not there."""
-        place = kept(Path(self.cache or ""), self.description, self._stock.settings, configuration, count)
+        place = kept(Path(self.cache or ""), self._stock, configuration, count)
         if (solved := place.find()) is None:
             place.keep(solved := self._solved(configuration, count))
         return solved

@@ -65,6 +65,8 @@ def response_space(part: CompletePart, depth: int) -> Subspace:
     for level in range(depth):
         known = space.size
         space = enlarged(space, shapes)
+        if space.size == known:
+            break
         if level + 1 < depth:
             shapes = part.solve(part.model.mass @ _slow(space, known))
     return space

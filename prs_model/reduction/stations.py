@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -22,16 +22,28 @@ from .super_element import SuperElement
 from .surprising_ties import warn_of_surprises
 from .travelling import TravellingElement
 
+CANDIDATES = 3  # modes that a part which awaits its joints is stored with, for the machine to choose from
+SAME = 9  # decimals of a joint value [m] up to which two contacts are at one place
+
+Contact = tuple[str, Travel]
+"""The interface that travels, and how."""
+
 logger = logging.getLogger("prs_model")
 
 
-def travelling_interface(interfaces: Mapping[str, Interface], source: str) -> tuple[str, Travel] | None:
+def travelling_interface(interfaces: Mapping[str, Interface], source: str) -> Contact | None:
     """The one interface that travels, if any. Raises PartFileError when there are several."""
     found = [(name, each.travel) for name, each in interfaces.items() if each.travel is not None]
     if len(found) > 1:
         names = ", ".join(name for name, _ in found)
         raise PartFileError(source, f"the interfaces {names} travel, a part may have one that does")
     return found[0] if found else None
+
+
+def shift_of(travel: Travel, value: float) -> FloatArray:
+    """How far (3,) [m] a travelling interface has moved when its joint stands at a value [m]."""
+    direction = np.array(travel.along, dtype=float)
+    return np.asarray(direction / np.linalg.norm(direction) * np.round(value, SAME))
 
 
 def reduce_travelling(
@@ -41,28 +53,61 @@ def reduce_travelling(
 
     Raises PartFileError for interfaces that the part cannot offer, PhysicsError for a part in several pieces.
     """
+    contact = _contact(model, interfaces)
+    travel = contact[1]
+    ties, moving = _ties_by_station(model, interfaces, settings, contact, travel.stations)
+    _warn_of_gaps(model, ties[0], moving, np.array([shift_of(travel, value) for value in travel.stations]))
+    warn_of_surprises(model, ties[0])
+    elements, products = _reduced(model, ties, moving, settings, contact, grounded)
+    return TravellingElement(travel.joint, np.array(travel.stations, dtype=float), elements, products)
+
+
+def reduce_in_place(
+    model: FiniteElementModel,
+    interfaces: Mapping[str, Interface],
+    settings: Settings,
+    value: float,
+    *,
+    grounded: bool = False,
+) -> SuperElement:
+    """The same part with its contact where it is when its joint stands at a value [m], as if a station were there.
+
+    Raises what `reduce_travelling` raises.
+    """
+    contact = _contact(model, interfaces)
+    ties, moving = _ties_by_station(model, interfaces, settings, contact, [value])
+    return _reduced(model, ties, moving, settings, contact, grounded)[0][0]
+
+
+def _contact(model: FiniteElementModel, interfaces: Mapping[str, Interface]) -> Contact:
     found = travelling_interface(interfaces, model.source)
     if found is None:
         raise PartFileError(model.source, f"{model.name}: none of its interfaces travels")
     name, travel = found
-    direction = np.array(travel.along, dtype=float)
-    if not np.any(direction):
+    if not any(travel.along):
         raise PartFileError(model.source, f"interfaces.{name}.travel.along: found (0, 0, 0), expected a direction")
-    stations = np.array(travel.stations, dtype=float)
-    shifts = np.outer(stations, direction / np.linalg.norm(direction))
-    ties, moving = _ties_by_station(model, interfaces, settings, name, shifts)
-    _warn_of_gaps(model, ties[0], moving, shifts)
-    warn_of_surprises(model, ties[0])
+    return name, travel
+
+
+def _reduced(
+    model: FiniteElementModel,
+    ties: list[list[Tie]],
+    moving: list[bool],
+    settings: Settings,
+    contact: Contact,
+    grounded: bool,
+) -> tuple[tuple[SuperElement, ...], FloatArray | None]:
+    """An element for each station, and the products of their bases where these are interpolated."""
+    name, travel = contact
     if travel.method == "stations":
-        nodes = node_per_station(model, ties, moving, settings.modes, grounded)
-        return TravellingElement(travel.joint, stations, nodes)
+        return node_per_station(model, ties, moving, settings.modes, grounded), None
     if all(moving) and not grounded:
         raise PartFileError(
             model.source, f"interfaces.{name}: the part has no other interface and no ground to be held by; add one"
         )
-    basis = AWAITS_JOINTS if settings.method == "joint-loaded" else "craig-bampton"
-    elements, products = reduction_per_station(model, ties, np.array(moving), settings.modes, grounded, basis)
-    return TravellingElement(travel.joint, stations, elements, products)
+    awaits = settings.method == "joint-loaded"
+    basis, modes = (AWAITS_JOINTS, CANDIDATES) if awaits else ("craig-bampton", settings.modes)
+    return reduction_per_station(model, ties, np.array(moving), modes, grounded, basis)
 
 
 def _warn_of_gaps(model: FiniteElementModel, ties: list[Tie], moving: list[bool], shifts: FloatArray) -> None:
@@ -82,10 +127,12 @@ def _ties_by_station(
     model: FiniteElementModel,
     interfaces: Mapping[str, Interface],
     settings: Settings,
-    travelling: str,
-    shifts: FloatArray,
+    contact: Contact,
+    stations: Sequence[float],
 ) -> tuple[list[list[Tie]], list[bool]]:
     """All ties at every station, and which of them travel; the nodes of those that do are put on straight lines."""
+    travelling, travel = contact
+    shifts = np.array([shift_of(travel, value) for value in stations])
     ties = [interface_ties(model, interfaces, settings, shift=shift) for shift in shifts]
     one = interface_ties(model, {travelling: interfaces[travelling]}, settings, shift=shifts[0])
     names = {tie.node for tie in one}

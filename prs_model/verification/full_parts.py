@@ -25,15 +25,18 @@ SCRIPT = "rebuild.py"
 def check_full_parts(machine: Machine) -> None:
     """Raise PrsError for parts that come reduced, PartFileError for a part file that is not there."""
     description = machine.description
-    bodies = {description.stems[name]: body for name, body in description.bodies.items()}
-    reduced = [stem for stem, body in bodies.items() if plugins.reducer(body.reducer).gives == "reduced"]
+    bodies, stems = description.bodies, description.stems
+    reduced = [name for name, body in bodies.items() if plugins.reducer(body.reducer).gives == "reduced"]
     if reduced:
+        others = {stems[name] for name in bodies if name not in reduced}
+        told = list(dict.fromkeys(name if stems[name] in others else stems[name] for name in reduced))
+        full = [name for name in plugins.list_reducers() if plugins.reducer(name).gives != "reduced"]
         raise PrsError(
-            f"{machine.name}: {', '.join(reduced)} {'come' if len(reduced) > 1 else 'comes'} reduced, so that there is "
-            "no complete order to verify against; expected parts with full matrices (solid, calculix, abaqus, ansys)"
+            f"{machine.name}: {', '.join(told)} {'come' if len(told) > 1 else 'comes'} reduced, so that there is no "
+            f"complete order to verify against; expected parts with full matrices ({', '.join(full)})"
         )
-    for stem, body in bodies.items():
-        source = asked(stem, body, description.folder)[1].source
+    for name, body in bodies.items():
+        source = asked(name, body, description.folder)[1].source
         if source is not None and not source.exists():
             raise PartFileError(source, f"there is no such file, and the complete order needs it; {_remedy(machine)}")
 

@@ -6,8 +6,6 @@ complete order. Reduced in place it is one, and the bound holds.
 
 from __future__ import annotations
 
-import numpy as np
-
 from ..complete_order.stock import full_part
 from ..description.settings import Settings
 from ..finite_elements import FiniteElementModel
@@ -15,12 +13,8 @@ from ..joint_loaded import joint_loaded_parts
 from ..kinematics import Configuration
 from ..machine import Machine
 from ..reduction import SuperElement, TravellingElement
-from ..reduction.contact import reduction_per_station
-from ..reduction.from_model import AWAITS_JOINTS
-from ..reduction.interfaces import interface_ties
-from ..reduction.stations import travelling_interface
-
-_SAME = 9  # decimals of a joint value [m] up to which two contacts are at one place
+from ..reduction.kinds import Kind, kind_of
+from ..reduction.stations import SAME, reduce_in_place, travelling_interface
 
 
 class InPlace:
@@ -28,41 +22,35 @@ class InPlace:
 
     def __init__(self, machine: Machine):
         self.machine = machine
-        bodies = machine.description.bodies
-        found = {name: travelling_interface(body.interfaces, name) for name, body in bodies.items()}
-        self.travelling = {name: contact for name, contact in found.items() if contact is not None}
-        self._models: dict[str, FiniteElementModel] = {}
+        description, defaults = machine.description, machine.description.file.reduction
+        found = {name: travelling_interface(body.interfaces, name) for name, body in description.bodies.items()}
+        self.travelling = {name: contact[1] for name, contact in found.items() if contact is not None}
+        self._kinds: dict[str, Kind] = {}
+        for name in self.travelling:
+            body = description.bodies[name]
+            stem, settings = description.stems[name], Settings.of(body, defaults)
+            self._kinds[name] = kind_of(stem, body, description.folder, settings)
+        self._models: dict[Kind, FiniteElementModel] = {}
 
     def at(self, configuration: Configuration) -> dict[str, SuperElement | TravellingElement]:
         """All parts in a configuration; where the method wants it, loaded by the joints as they are there."""
-        description = self.machine.description
-        made: dict[tuple[str, float], SuperElement] = {}
-        moved: dict[str, SuperElement | TravellingElement] = {}
-        for name, (_, travel) in self.travelling.items():
-            stroke = round(configuration.joint_values[travel.joint], _SAME)
-            key = description.stems[name], stroke
+        made: dict[tuple[Kind, float], SuperElement] = {}
+        parts: dict[str, SuperElement | TravellingElement] = dict(self.machine.parts)
+        for name, travel in self.travelling.items():
+            key = self._kinds[name], round(configuration.joint_values[travel.joint], SAME)
             if key not in made:
-                made[key] = self._reduced(name, stroke)
-            moved[name] = made[key]
-        moved = joint_loaded_parts(description, moved, self.machine.joints, lambda: configuration)
-        return {name: moved.get(name, part) for name, part in self.machine.parts.items()}
+                made[key] = self._reduced(name, key[1])
+            parts[name] = made[key]
+        return joint_loaded_parts(self.machine.description, parts, self.machine.joints, lambda **_: configuration)
 
-    def _reduced(self, name: str, stroke: float) -> SuperElement:
+    def _reduced(self, name: str, value: float) -> SuperElement:
         description = self.machine.description
-        body, (contact, travel) = description.bodies[name], self.travelling[name]
-        model, settings = self._model(name), Settings.of(body, description.file.reduction)
-        direction = np.array(travel.along, dtype=float)
-        shift = direction / np.linalg.norm(direction) * stroke
-        ties = interface_ties(model, body.interfaces, settings, shift=shift)
-        moving = {tie.node for tie in interface_ties(model, {contact: body.interfaces[contact]}, settings, shift=shift)}
-        moves = np.array([tie.node in moving for tie in ties])
-        basis = AWAITS_JOINTS if settings.method == "joint-loaded" else "craig-bampton"
-        elements, _ = reduction_per_station(model, [ties], moves, settings.modes, body.grounded, basis)
-        return elements[0]
+        body = description.bodies[name]
+        settings = Settings.of(body, description.file.reduction)
+        return reduce_in_place(self._model(name), body.interfaces, settings, value, grounded=body.grounded)
 
     def _model(self, name: str) -> FiniteElementModel:
-        description = self.machine.description
-        stem, body = description.stems[name], description.bodies[name]
-        if stem not in self._models:
-            self._models[stem] = full_part(stem, body, description.folder)
-        return self._models[stem]
+        kind, description = self._kinds[name], self.machine.description
+        if kind not in self._models:
+            self._models[kind] = full_part(kind.stem, description.bodies[name], description.folder)
+        return self._models[kind]

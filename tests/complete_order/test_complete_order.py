@@ -41,6 +41,7 @@ joints:
 output: {{node: upper.tip, frame: upper}}
 """
 ELASTIC = "stiffness: {ux: 4.0e8, uy: 2.0e8, uz: 2.0e8, rx: 3.0e5, ry: 5.0e5, rz: 5.0e5}"
+RIGID = "rigid: true"
 PARTLY = "stiffness: {ux: rigid, uy: 2.0e8, uz: rigid, rx: 3.0e5, ry: 5.0e5, rz: rigid}"
 
 
@@ -52,7 +53,7 @@ def pair(folder: Path, coupling: str, law: str) -> prs.Machine:
     return prs.load_machine(folder)
 
 
-@pytest.mark.parametrize("law", [ELASTIC, PARTLY], ids=["elastic", "partly rigid"])
+@pytest.mark.parametrize("law", [ELASTIC, PARTLY, RIGID], ids=["elastic", "partly rigid", "rigid"])
 @pytest.mark.parametrize("coupling", ["averaged", "rigid"])
 def test_woodbury_equals_the_monolithic_matrix(tmp_path, coupling, law):
     machine = pair(tmp_path, coupling, law)
@@ -145,3 +146,35 @@ def test_a_reduced_part_is_refused():
     machine = prs.load_machine("hexapod")
     with pytest.raises(prs.PartFileError, match="comes reduced: the complete order needs full matrices"):
         machine.complete_order().modes(machine.configuration())
+
+
+BEAMS = """name: two
+urdf: pair.urdf
+task: {{kind: fixed, frame: upper, workspace: {{}}, reference: {{pose: {{}}, joints: {{}}}}}}
+bodies:
+  lower: {{frame: lower, reducer: beam, options: &bar {bar}, interfaces: {{root: {{node: root}}, tip: {{node: tip}}}}}}
+  upper: {{frame: upper, reducer: beam, options: *bar, interfaces: {{root: {{node: root}}, tip: {{node: tip}}}}}}
+joints:
+  foot: {{frame: lower, between: [ground, lower.root], rigid: true}}
+  seat:
+    frame: upper
+    between: [lower.tip, upper.root]
+    stiffness: {{ux: 4.0e8, uy: 2.0e8, uz: 2.0e8, rx: 3.0e5, ry: 3.0e5, rz: 3.0e5}}
+output: {{node: upper.tip, frame: upper}}
+"""
+
+
+@pytest.mark.parametrize("elements", [1, 2, 3])
+def test_parts_of_fewer_dofs_than_the_subspace_wants(tmp_path, elements):
+    """Beams of few nodes: all their motions are taken before the last block."""
+    section = {"kind": "rectangle", "y": 0.05, "z": 0.02, "material": STEEL}
+    member = {"between": ["root", "tip"], "section": "bar", "elements": elements}
+    bar = {"nodes": {"root": [0, 0, 0], "tip": [0.3, 0, 0]}, "sections": {"bar": section}, "members": [member]}
+    (tmp_path / "pair.urdf").write_text(URDF)
+    (tmp_path / "machine.yaml").write_text(BEAMS.format(bar=bar))
+    machine = prs.load_machine(tmp_path)
+    complete = machine.complete_order()
+    expected = monolithic_frequencies(complete.joined(machine.configuration()), 6)
+    modes = complete.modes(machine.configuration(), 6)
+    elastic = modes.frequencies > 0.0
+    assert modes.frequencies[elastic] == pytest.approx(expected[elastic], rel=1e-7)
