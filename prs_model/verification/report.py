@@ -9,9 +9,24 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..description.units import Dimension
+from ..errors import PrsError
 from ..modes import Modes
 
 Characters = tuple[tuple[str, ...], ...]
+
+
+def relative_difference(frequencies: FloatArray, complete: FloatArray, what: str) -> FloatArray:
+    """f / f_complete - 1, of arrays [Hz] of one shape; zero where both are motions that strain nothing.
+
+    what: is compared, for messages. Raises PrsError where the complete model alone has such a motion.
+    """
+    free = complete == 0.0
+    if np.any(frequencies[free] > 0.0):
+        raise PrsError(
+            f"{what}: found {frequencies[free].max():.4g} Hz where the complete model moves freely, expected 0 Hz; "
+            "there is no relative difference from 0: hold that motion, such as by its joint's drive"
+        )
+    return np.asarray(np.where(free, 0.0, frequencies / np.where(free, 1.0, complete) - 1.0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,4 +143,7 @@ class VerificationReport:
 
     def _margin(self, reduction: ModelRun, frequencies: FloatArray) -> float | None:
         own = [model.frequencies for model in self.models if model.name == reduction.own]
-        return float((frequencies[:, : self.count] / own[0][:, : self.count] - 1.0).min()) if own else None
+        if not own:
+            return None
+        what = f"{reduction.name} against {reduction.own}"
+        return float(relative_difference(frequencies[:, : self.count], own[0][:, : self.count], what).min())

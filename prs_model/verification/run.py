@@ -14,7 +14,7 @@ from .environment import environment
 from .full_parts import check_full_parts
 from .poses import default_poses, distinct
 from .reductions import COUPLINGS, REDUCTIONS, Reduction
-from .report import Comparison, VerificationReport
+from .report import Comparison, VerificationReport, relative_difference
 from .runs import Observed, complete_run, reduced_run
 
 
@@ -68,7 +68,10 @@ def verify(
 
 
 def compare(reduced: Observed, complete: Observed, count: int) -> Comparison:
-    """Pair the modes of a reduced and a complete model at every pose; discrepancies of the lowest `count`."""
+    """Pair the modes of a reduced and a complete model at every pose; discrepancies of the lowest `count`.
+
+    Raises PrsError where the complete model moves freely and its partner does not.
+    """
     pairs = []
     for k, (a, b) in enumerate(zip(complete.shapes, reduced.shapes, strict=True)):
         most = len(reduced.run.frequencies[k])
@@ -78,13 +81,14 @@ def compare(reduced: Observed, complete: Observed, count: int) -> Comparison:
         )
     partners = np.array([pair.partners[:count] for pair in pairs])
     there, here = complete.run.frequencies[:, :count], reduced.run.frequencies
+    what = f"{reduced.run.name} against {complete.run.name}"
     return Comparison(
         reduction=reduced.run.name,
         model=complete.run.name,
         partners=partners,
         clusters=np.array([pair.clusters[:count] for pair in pairs]),
-        discrepancies=np.take_along_axis(here, partners, axis=1) / there - 1.0,
-        margins=here[:, :count] / there - 1.0,
+        discrepancies=relative_difference(np.take_along_axis(here, partners, axis=1), there, what),
+        margins=relative_difference(here[:, :count], there, what),
         mac=np.array([pair.mac[:count, :count] for pair in pairs]),
     )
 

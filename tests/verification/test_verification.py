@@ -18,6 +18,7 @@ from prs_model.verification import (
 )
 from prs_model.verification.pages import page
 from prs_model.verification.plain import as_dict
+from prs_model.verification.report import relative_difference
 from tests.verification.gantry import TRAVEL, gantry
 
 POSES = "verification: {poses: {x: [0.3, 0.45], phi: [0.5]}, published: {measured: [100, 150]}}\n"
@@ -74,6 +75,25 @@ def test_the_bound_holds_between_stations_with_contacts_in_place(tmp_path):
         assert run.in_place == pytest.approx(run.frequencies[:, :4], rel=2e-2)
         assert np.abs(run.in_place / run.frequencies[:, :4] - 1.0).max() > 1e-9
         assert report.least_margin_in_place(run) > -1e-8
+
+
+def test_a_motion_that_nothing_holds_differs_by_nothing(tmp_path):
+    """Of 0 Hz in all models: no division by it, in figures, tables, or JSON."""
+    machine = gantry(tmp_path).replace({"joints.R.drive": None})
+    report = verify(machine, [{}], models=["A"], count=4, reductions=reductions_named(AVERAGED))
+    assert report.models[0].frequencies[0, 0] == 0.0
+    for each in report.comparisons:
+        assert each.discrepancies[0, 0] == each.margins[0, 0] == 0.0
+        assert each.largest[0] < 1e-2
+    json.dumps(as_dict(report), allow_nan=False)
+    assert "nan" not in page([report])
+    assert "| 1 | 0.00 | 0.00  +0.00  1.0000 | 0.00  +0.00  1.0000 |" in page([report])
+
+
+def test_what_moves_freely_in_one_model_only_is_told():
+    assert relative_difference(np.array([0.0, 3.0]), np.array([0.0, 2.0]), "a against A").tolist() == [0.0, 0.5]
+    with pytest.raises(prs.PrsError, match="a against A: found 3 Hz where the complete model moves freely"):
+        relative_difference(np.array([3.0]), np.array([0.0]), "a against A")
 
 
 def test_the_same_kinematics_agree_and_one_node_a_joint_costs(report):
