@@ -31,8 +31,8 @@ class PoseSlider:
         """[m, rad]"""
         return float(self.slider.value) * self.factor
 
-    @value.setter
-    def value(self, value: float) -> None:
+    def move(self, value: float) -> None:
+        """To a value [m, rad]."""
         _set(self.slider, _shown(value, self.factor))
 
 
@@ -52,7 +52,7 @@ def pose_sliders(
 
     def back(_: object) -> None:
         for name, each in sliders.items():
-            each.value = start[name]
+            each.move(start[name])
         changed()
 
     button.on_click(back)

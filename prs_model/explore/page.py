@@ -40,7 +40,7 @@ class Page:
         self.factors = factor_sliders(gui, machine, asked)
         count = len(start.modes.frequencies)
         with gui.add_folder("Mode shape"):
-            self.mode = gui.add_slider("mode", 1, count, 1, 1)
+            self.mode = gui.add_slider("mode number", 1, count, 1, 1)
             self.amplitude = gui.add_slider("amplitude [%]", 0.0, 20.0, 0.5, _AMPLITUDE, hint="of the machine's size")
             self.animate = gui.add_checkbox("animate", True)
         for control in (self.mode, self.amplitude, self.animate):

@@ -102,7 +102,8 @@ def _server(port: int, label: str) -> viser.ViserServer:
             server.stop()
             raise _no_port(port, "in use")
     server.request_share_url = _stay_here
-    server.gui.configure_theme(control_layout="fixed", control_width="large", show_share_button=False, show_logo=False)
+    server.gui.configure_theme(control_width="large", show_share_button=False, show_logo=False)
+    server.gui.main_panel.dock_right()
     return cast("viser.ViserServer", server)
 
 
