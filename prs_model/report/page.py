@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from ..machine import Machine
     from .card import Joint, Part
     from .figures import Figure
-    from .scene import Scene
+    from .scene import Scene, Shape
     from .sources import Entry
     from .study import Study
 
@@ -68,7 +68,7 @@ def page(content: Content, folder: Path) -> str:
             version=__version__,
             style=(_ASSETS / "style.css").read_text(encoding="utf-8"),
             scripts=[(_ASSETS / name).read_text(encoding="utf-8") for name in _SCRIPTS],
-            data=_script_safe(json.dumps([_data(pose) for pose in content.poses], separators=(",", ":"))),
+            data=_script_safe(json.dumps(_data(content.poses), separators=(",", ":"))),
             image=lambda pose, name: _image(folder / pose.study.folder / name),
             workspace=_workspace(content.machine),
             directions=[(each, unit(each, each)) for each in DIRECTIONS],
@@ -95,43 +95,62 @@ def environment() -> Any:
     return environment
 
 
-def _data(pose: Pose) -> dict[str, Any]:
-    """What the scripts need."""
-    study, response = pose.study, pose.study.response
+def _data(poses: Sequence[Pose]) -> dict[str, Any]:
+    """What the scripts need. Poses of one machine share their triangles, as far as these are the same."""
+    meshes: list[dict[str, Any]] = []
+    listed = []
+    for pose in poses:
+        mesh = _mesh(pose.scene)
+        if mesh not in meshes:
+            meshes.append(mesh)
+        listed.append({**_pose(pose), "scene": _scene(pose.scene), "mesh": meshes.index(mesh)})
+    return {"meshes": meshes, "poses": listed}
+
+
+def _pose(pose: Pose) -> dict[str, Any]:
+    """Frequencies, labels and responses, to the digits that a screen shows."""
+    modes, response = pose.study.modes, pose.study.response
+    curves = {} if response is None else {axis: _complex(response.curve(axis)) for axis in "uvw"}
     return {
-        "frequencies": [round(float(f), 4) for f in study.modes.frequencies],
-        "labels": [f"{each.group} {each.motion}" for each in study.modes.characters()],
-        "scene": _scene(pose.scene),
+        "frequencies": [round(float(f), 4) for f in modes.frequencies],
+        "labels": [f"{each.group} {each.motion}" for each in modes.characters()],
         "frf": None
         if response is None
-        else {
-            "hz": [round(float(f), 4) for f in response.frequencies],
-            "curves": {axis: _complex(response.curve(axis)) for axis in "uvw"},
-        },
+        else {"hz": [round(float(f), 4) for f in response.frequencies], "curves": curves},
     }
 
 
-def _scene(scene: Scene) -> dict[str, Any]:
-    """The bodies in one, the grounded last; displacements (k, p, 3) as whole numbers, 32767 the largest."""
-    shapes = sorted(scene.shapes, key=lambda shape: shape.grounded)
+def _mesh(scene: Scene) -> dict[str, Any]:
+    """How the points of all bodies in one list are joined, the grounded bodies last."""
+    shapes = _ordered(scene)
     kinds = list(dict.fromkeys(shape.kind for shape in shapes))
     starts = np.cumsum([0, *(len(shape.points) for shape in shapes)])[:-1]
     free = [shape for shape in shapes if not shape.grounded]
-    moved = np.concatenate([shape.displacements for shape in shapes], axis=1)
     return {
-        "points": _text(np.vstack([shape.points for shape in shapes]).astype("<f4")),
-        "moved": _text(np.round(_UNIT * np.clip(moved, -1.0, 1.0)).astype("<i2")),
-        "kinds": kinds,
         "kind": _text(np.concatenate([np.full(len(s.points), kinds.index(s.kind)) for s in shapes]).astype("u1")),
         "triangles": _text(_numbered([shape.triangles for shape in shapes], starts)),
         "edges": _text(_numbered([shape.edges for shape in shapes], starts)),
         "freeTriangles": sum(shape.triangles.size for shape in free),
         "freeEdges": sum(shape.edges.size for shape in free),
+    }
+
+
+def _scene(scene: Scene) -> dict[str, Any]:
+    """Where the points are; displacements (k, p, 3) as whole numbers, 32767 the largest."""
+    shapes = _ordered(scene)
+    moved = np.concatenate([shape.displacements for shape in shapes], axis=1)
+    return {
+        "points": _text(np.vstack([shape.points for shape in shapes]).astype("<f4")),
+        "moved": _text(np.round(_UNIT * np.clip(moved, -1.0, 1.0)).astype("<i2")),
         "centre": scene.centre.tolist(),
         "size": scene.size,
         "output": scene.output.tolist(),
         "axes": scene.axes.T.tolist(),
     }
+
+
+def _ordered(scene: Scene) -> list[Shape]:
+    return sorted(scene.shapes, key=lambda shape: shape.grounded)
 
 
 def _numbered(cells: Sequence[NDArray[Any]], starts: NDArray[Any]) -> NDArray[Any]:
@@ -147,6 +166,7 @@ def _text(array: NDArray[Any]) -> str:
 
 
 def _image(path: Path) -> str:
+    """A figure in the page itself."""
     kind = {".svg": "image/svg+xml", ".png": "image/png"}[path.suffix]
     return f"data:{kind};base64,{base64.b64encode(path.read_bytes()).decode()}"
 

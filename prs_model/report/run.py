@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from ..response import DampingLike
 
 PAGE = "report.html"
+_HEAVY = 10e6  # bytes
 _log = logging.getLogger(__name__)
 
 
@@ -66,7 +67,10 @@ def write_report(
         command=command,
     )
     beside = _beside(content, folder)
-    write_text(folder / PAGE, page(content, folder))
+    text = page(content, folder)
+    if len(text) > _HEAVY:
+        _log.warning("%s is %.0f MB; fewer poses make it lighter", folder / PAGE, len(text) / 1e6)
+    write_text(folder / PAGE, text)
     return (folder / PAGE, *(folder / name for name in beside))
 
 

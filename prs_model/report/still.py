@@ -21,7 +21,10 @@ _LIGHT = np.array([0.3, 0.5, 0.81])
 
 
 def draw_still(study: Study, scene: Scene, path: Path) -> None:
-    """Draw every mode of a pose, displaced, coloured by displacement; what is grounded can be seen through."""
+    """Draw every mode of a pose, displaced, coloured by displacement; what is grounded can be seen through.
+
+    For PNG: as vectors, so many triangles take tens of megabytes.
+    """
     count = len(study.modes.frequencies)
     columns = min(count, 4)
     rows = ceil(count / columns)

@@ -16,7 +16,10 @@ _FLAGS = ("--no-sandbox", "--enable-unsafe-swiftshader", "--use-angle=swiftshade
 
 @contextmanager
 def opened(page: Path, width: int = 1280, height: int = 900) -> Iterator[tuple[Any, list[str]]]:
-    """A page from file://, and what its console complains of; every request that leaves the file is a complaint too."""
+    """A page from file://, and what its console complains of; every request that leaves the file is a complaint too.
+
+    For a reader who has asked for less motion, so that nothing moves unless it is told to.
+    """
     api = pytest.importorskip("playwright.sync_api", reason="playwright drives the browser")
     found = next(filter(None, map(shutil.which, _NAMES)), None)
     if found is None:
@@ -24,7 +27,8 @@ def opened(page: Path, width: int = 1280, height: int = 900) -> Iterator[tuple[A
     with api.sync_playwright() as driver:
         browser = driver.chromium.launch(executable_path=found, args=_FLAGS)
         try:
-            tab, said = browser.new_page(viewport={"width": width, "height": height}), list[str]()
+            size, said = {"width": width, "height": height}, list[str]()
+            tab = browser.new_page(viewport=size, reduced_motion="reduce")
             tab.on(
                 "console", lambda message: said.append(message.text) if message.type in ("error", "warning") else None
             )

@@ -33,14 +33,15 @@ def at_phase(tab: Any, degrees: int) -> np.ndarray:
 
 @pytest.mark.parametrize("name", ["head", "hexapod"])
 def test_machine_swings(name: str, request: pytest.FixtureRequest) -> None:
-    with opened(request.getfixturevalue(name) / "report.html") as (tab, said):
+    with opened(request.getfixturevalue(name) / "report.html", 700, 600) as (tab, said):
+        tab.locator("#play").click()
         phase = tab.locator("#phase").input_value()
-        tab.wait_for_function(f"document.getElementById('phase').value !== '{phase}'")  # it plays by itself
+        tab.wait_for_function(f"document.getElementById('phase').value !== '{phase}'")
         middle, out, back = at_phase(tab, 0), at_phase(tab, 90), at_phase(tab, 180)
         assert len(np.unique(out @ [65536.0, 256.0, 1.0])) > 500  # colours: not blank
         assert difference(middle, out) > 0.005
         assert difference(middle, back) < 0.001
-        assert tab.locator("#play").inner_text() == "Play"  # a hand on the phase stops it
+        assert tab.locator("#play").inner_text() == "Play"  # a hand on the phase has stopped it
         assert said == []
 
 
@@ -71,9 +72,11 @@ def test_controls_work_by_mouse(head: Path) -> None:
 
 def test_controls_work_by_keyboard(head: Path) -> None:
     with opened(head / "report.html") as (tab, said):
+        assert tab.locator("#play").inner_text() == "Play"  # nothing moves by itself for who does not want it
         tab.locator("#play").focus()
         tab.keyboard.press("Enter")
-        assert tab.locator("#play").inner_text() == "Play"
+        assert tab.locator("#play").inner_text() == "Pause"
+        tab.keyboard.press("Enter")
         tab.locator("#canvas").focus()
         start = picture(tab)
         for key in ("ArrowLeft", "ArrowUp", "+", "n"):
@@ -142,7 +145,8 @@ def test_paper_shows_every_pose_and_the_details(hexapod: Path) -> None:
         tab.evaluate("window.dispatchEvent(new Event('beforeprint'))")
         tab.emulate_media(media="print")
         assert not tab.locator("canvas").is_visible()
-        assert tab.locator(".still:visible").count() == 2
+        assert not tab.locator("#chart").is_visible()
+        assert tab.locator(".paper:visible img").count() == 4  # shapes and response of both
         assert tab.locator("details:not([open])").count() == 0
         tab.evaluate("window.dispatchEvent(new Event('afterprint'))")
         assert tab.locator(".still:visible").count() == 1

@@ -2,7 +2,7 @@
 /* What the controls do. */
 
 (() => {
-  const poses = JSON.parse(document.getElementById("data").textContent);
+  const { poses, meshes } = JSON.parse(document.getElementById("data").textContent);
   const get = (id) => document.getElementById(id);
   const canvas = get("canvas");
   const viewer = Viewer.create(canvas, [...document.querySelectorAll(".axis")]);
@@ -16,7 +16,7 @@
     document.querySelectorAll("[data-pose]").forEach((each) => { each.hidden = +each.dataset.pose !== k; });
     if (get("pose")) get("pose").value = k;
     mode = Math.min(mode, poses[k].frequencies.length - 1);
-    if (viewer) { viewer.state.mode = mode; viewer.show(poses[k].scene); }
+    if (viewer) { viewer.state.mode = mode; viewer.show({ ...poses[k].scene, ...meshes[poses[k].mesh] }); }
     const has = poses[k].frf !== null;
     get("response").hidden = !has;
     if (has) { chart.state.mode = mode; chart.show(poses[k]); }
