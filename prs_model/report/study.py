@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ..description.schema import Damping
     from ..machine import Machine
     from ..modes import Modes
-    from ..response import FrequencyResponse, WeakMode
+    from ..response import DampingLike, FrequencyResponse, WeakMode
 
 _LINES = 1000
 
@@ -55,7 +55,7 @@ class Study:
         return f"pose_{self.number}"
 
 
-def study(machine: Machine, pose: Mapping[str, float], number: int, count: int, damping: object = None) -> Study:
+def study(machine: Machine, pose: Mapping[str, float], number: int, count: int, damping: DampingLike = None) -> Study:
     """Solve one pose for so many modes. The response is of all modes, whatever the count.
 
     damping: as in Modes.frf. Raises UnreachablePoseError, or PrsError for damping that makes no sense.
@@ -63,7 +63,7 @@ def study(machine: Machine, pose: Mapping[str, float], number: int, count: int, 
     configuration = machine.configuration(**pose)
     system = machine.assemble(configuration)
     modes = system.modes(count)
-    model = damping_of(system, damping)  # type: ignore[arg-type]  # whatever else is refused in words
+    model = damping_of(system, damping)
     return Study(
         number=number,
         pose=configuration.pose,
