@@ -50,7 +50,7 @@ def add_plot(gui: viser.GuiApi, response: FrequencyResponse, note: str) -> viser
     return gui.add_uplot(
         curves(response),
         series=tuple(lines),
-        title=f"Receptance at the tool point [µm/N], {note}",
+        title=f"Receptance at the tool point, {note}",
         scales={"x": {"time": False}, "y": {"distr": 3}},
         axes=({"label": "frequency [Hz]"}, {"label": "µm/N", "size": 70}),
         height=300,

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 _STILL = np.array([176, 190, 202])
 _MOVING = np.array([232, 119, 34])
 _GROUNDED_OPACITY = 0.25  # a frame around the machine must not hide it
-_VIEW = np.array([1.3, -0.9, 0.75])  # from the machine's middle, over its size
+_VIEW = np.array([1.1, -0.8, 0.65])  # from the machine's middle, over its size
 
 
 class Scene:

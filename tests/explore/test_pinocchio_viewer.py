@@ -50,6 +50,7 @@ def test_the_largest_displacement_is_the_amplitude() -> None:
     assert largest == pytest.approx(0.001 * np.ptp(seen[0], axis=0).max(), rel=0.1)
 
 
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")  # pinocchio.visualize imports all viewers there are
 def test_it_plays_in_the_window_of_a_visualizer() -> None:
     viser: Any = pytest.importorskip("viser", reason="the extra `viz`")
     from pinocchio.visualize import ViserVisualizer
