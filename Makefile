@@ -5,9 +5,10 @@ BIN    := $(VENV)/bin
 
 .PHONY: demo test check rebuild parts verification pictures clean
 
-demo: $(VENV)/.plot
+demo: $(VENV)/.report
 	@mkdir -p out
 	$(BIN)/prs-model modes head_3prs -n 8 --picture out/head_3prs_modes.png
+	$(BIN)/prs-model report head_3prs -o out/head_3prs
 
 test: $(VENV)/.test
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest
