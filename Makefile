@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
 
-.PHONY: demo test check rebuild parts verification pictures clean
+.PHONY: demo test browser check rebuild parts verification pictures clean
 
 demo: $(VENV)/.report
 	@mkdir -p out
@@ -12,6 +12,10 @@ demo: $(VENV)/.report
 
 test: $(VENV)/.test
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest
+
+# The pages of `report` and `explore` in headless Chromium.
+browser: $(VENV)/.test
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -m browser
 
 check: $(VENV)/.dev
 	$(BIN)/ruff check

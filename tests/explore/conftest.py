@@ -38,9 +38,9 @@ def _running(machine: prs.Machine, **how: Any) -> Iterator[Session]:
             thread.join()
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def browser() -> Iterator[Any]:
-    """Chromium, driven by playwright."""
+    """Chromium, driven by playwright, of which one runs at a time."""
     playwright = pytest.importorskip("playwright.sync_api", reason="drives the browser")
     path = which("chromium") or which("chromium-browser") or which("google-chrome")
     if path is None:

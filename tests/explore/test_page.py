@@ -14,6 +14,8 @@ from tests.explore.conftest import Serve
 
 _PATIENCE = 60.0  # s, for software rendering on a busy computer
 
+pytestmark = pytest.mark.browser
+
 
 @pytest.fixture
 def opened(serve: Serve, browser: Any) -> Iterator[Callable[..., tuple[Any, Session]]]:

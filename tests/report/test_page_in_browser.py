@@ -9,6 +9,8 @@ import pytest
 
 from tests.report.browser import opened
 
+pytestmark = pytest.mark.browser
+
 
 def picture(tab: Any) -> np.ndarray:
     """The canvas as seen, (rows, columns, 3)."""
