@@ -29,8 +29,8 @@ rebuild: parts verification pictures
 # Holds the reductions of head_3prs against its complete finite-element model: docs/verification.
 verification: $(VENV)/.fem $(VENV)/.mesh $(VENV)/.plot
 	$(BIN)/prs-model verify head_3prs --random 20 --curve -o docs/verification
-	$(BIN)/prs-model verify head_3prs --bounds -o docs/verification/bounds
-	$(BIN)/prs-model verify head_3prs --random 20 --models A --reductions joint-loaded --stiffness 0.5 2 -o docs/verification/stiffness
+	$(BIN)/prs-model verify head_3prs --bounds -o out/verification_bounds
+	$(BIN)/prs-model verify head_3prs --models A --reductions joint-loaded --stiffness 0.5 2 -o out/verification_stiffness
 
 # Rebuilds the meshes and super-elements of head_3prs from its part script (needs Debian's libglu1-mesa and X libraries).
 parts: $(VENV)/.fem $(VENV)/.mesh

@@ -18,7 +18,8 @@ from tests.cli.test_cli import run
 def test_the_page_answers_until_ctrl_c_and_the_result_is_one_json_object() -> None:
     pytest.importorskip("viser")
     command = [sys.executable, "-m", "prs_model", "explore", "hexapod", "--port", "0", "--json"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+    heard = {"preexec_fn": lambda: signal.signal(signal.SIGINT, signal.SIG_DFL)}  # shells mute it for background jobs
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **heard) as process:
         try:
             address = _address(process)
             with urlopen(address, timeout=30) as page:
