@@ -129,7 +129,8 @@ class Machine:
     def complete_order(self, coupling: Coupling = "averaged", cache: Path | None = None) -> CompleteOrder:
         """The full finite-element model of the assembly, which the reduced one is held against.
 
-        coupling: of the interfaces, each member with a node of its own. Parts are factorized when first needed: keep it for several poses.
+        coupling: of the interfaces, each member with a node of its own. Parts are factorized when first needed: keep it
+        for several poses.
         cache: a folder where solved poses are kept, and found again while nothing that decides them has changed.
         """
         from .complete_order import CompleteOrder
