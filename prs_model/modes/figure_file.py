@@ -17,7 +17,7 @@ _DATE = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}  # what would m
 
 def check_writable(path: Path) -> None:
     """Raise PrsError now if a file could not be written to `path` later."""
-    with _told(path):
+    with told(path):
         if path.is_dir():
             raise IsADirectoryError(EISDIR, "it is a folder")
         _temporary(path).unlink()
@@ -27,7 +27,7 @@ def write_figure(figure: Any, path: Path) -> None:
     """Write a matplotlib figure; the file appears only when it is complete. Raises PrsError."""
     from matplotlib import rc_context
 
-    with _told(path):
+    with told(path):
         complete = _temporary(path)
         try:
             with rc_context({"svg.hashsalt": "prs-model"}):
@@ -46,7 +46,7 @@ def _temporary(path: Path) -> Path:
 
 
 @contextmanager
-def _told(path: Path) -> Iterator[None]:
+def told(path: Path) -> Iterator[None]:
     """Whatever keeps a file from being written becomes a PrsError."""
     try:
         yield

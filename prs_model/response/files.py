@@ -5,8 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import tempfile
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
@@ -14,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..errors import MissingExtraError, PrsError, short
-from ..modes.figure_file import check_writable
+from ..modes.figure_file import check_writable, told
 from ..reduction.storage import whole
 from .quantity import DIRECTIONS, Response, listed_pairs, load_unit, motion_unit, unit
 
@@ -52,7 +51,7 @@ def save(response: FrequencyResponse, path: Path, pairs: Sequence[str] | None = 
         draw({"": response}, path, pairs or DIRECTIONS, title)
         return
     write = write_csv if path.suffix.lower() == ".csv" else write_uff
-    with _told(path):
+    with told(path):
         write(response, path, listed)
 
 
@@ -127,12 +126,3 @@ def _pyuff() -> ModuleType:
     except ImportError as error:
         raise MissingExtraError("pyuff", "uff", "writing a universal file") from error
     return pyuff  # type: ignore[no-any-return]
-
-
-@contextmanager
-def _told(path: Path) -> Iterator[None]:
-    try:
-        yield
-    except OSError as error:
-        expected = "expected a file name in a folder that exists and is writable"
-        raise PrsError(f"{short(path)}: cannot be written ({error.strerror or error}); {expected}") from error
