@@ -143,7 +143,7 @@ const Chart = (() => {
         ...shown.map((axis) => node("circle", { cx: x, cy: geometry.y(curves[axis].size[k]), r: 3.5, class: axis })),
       ] : []));
       const { unit } = QUANTITIES[state.quantity];
-      const told = shown.map((axis) => `${axis} ${short(curves[axis].size[k])} ${unit}, ${Math.round(curves[axis].turn[k])}°`);
+      const told = shown.map((axis) => `${axis} ${short(curves[axis].size[k])} ${unit}, ${Math.round(curves[axis].turn[k])}°`.replaceAll(" ", "\u00a0"));
       readout.textContent = `${data.frf.hz[k].toFixed(1)} Hz:  ${told.join("   ")}`;
     }
 

@@ -5,16 +5,16 @@ const Viewer = (() => {
   const VERTEX = `#version 300 es
     in vec3 rest; in vec3 moved; in float kind;
     uniform mat4 camera; uniform vec3 eye; uniform float swing;
-    out vec3 place; out float size; flat out int part;
+    out vec3 place; out vec3 shift; flat out int part;
     void main() {
       place = rest + swing * moved;
-      size = length(moved);
+      shift = moved;
       part = int(kind + 0.5);
       gl_Position = camera * vec4(place, 1.0);
     }`;
   const FRAGMENT = `#version 300 es
     precision highp float;
-    in vec3 place; in float size; flat in int part;
+    in vec3 place; in vec3 shift; flat in int part;
     uniform vec3 eye; uniform vec4 line; uniform float opacity; uniform bool byPart;
     uniform vec3 scale[6]; uniform vec3 parts[8];
     out vec4 colour;
@@ -29,14 +29,14 @@ const Viewer = (() => {
       vec3 toEye = normalize(eye - place);
       float facing = abs(dot(normal, toEye));
       float above = 0.5 + 0.5 * normal.z * sign(dot(normal, toEye));
-      vec3 base = byPart ? parts[part % 8] : ofSize(size);
+      vec3 base = byPart ? parts[part % 8] : ofSize(length(shift));
       colour = vec4(base * (0.42 + 0.43 * facing + 0.15 * above), opacity);
     }`;
   const SCALE = [[0.27, 0.0, 0.33], [0.25, 0.27, 0.53], [0.16, 0.47, 0.56], [0.13, 0.66, 0.52], [0.48, 0.82, 0.32],
     [0.99, 0.91, 0.14]];
   const PARTS = [[0.35, 0.55, 0.75], [0.93, 0.69, 0.32], [0.45, 0.68, 0.45], [0.72, 0.46, 0.62], [0.85, 0.83, 0.5],
     [0.5, 0.5, 0.62], [0.82, 0.5, 0.42], [0.7, 0.78, 0.82]];
-  const VIEWS = { iso: [-0.96, 0.36], front: [-Math.PI / 2, 0], side: [0, 0], top: [-Math.PI / 2, Math.PI / 2 - 1e-3] };
+  const VIEWS = { iso: [-0.61, 0.36], front: [-Math.PI / 2, 0], side: [0, 0], top: [-Math.PI / 2, Math.PI / 2 - 1e-3] };
 
   const typed = (text, Type) => {
     const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
