@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from . import plugins
 from .description import MachineDescription, load_description, replaced
 from .errors import PrsError, short
+from .readable import readable, readable_range
 
 if TYPE_CHECKING:
     from .complete_order import CompleteOrder
@@ -116,6 +117,16 @@ class Machine:
         bodies = self.description.bodies
         loose = [name for name, body in bodies.items() if name not in held and not body.grounded]
         return tuple(f"body '{name}' is held by no joint" for name in loose)
+
+    def outside_workspace(self, pose: Mapping[str, float]) -> tuple[str, ...]:
+        """For each coordinate of a pose [m, rad] beyond the stated workspace: how far it is from where it should be."""
+        kinds, slack = self.kinematics.task.coordinates, 1e-9  # of rounding at the edge
+        return tuple(
+            f"outside the stated workspace: {name} {readable(pose[name], kinds[name])}, "
+            f"workspace {readable_range(low, high, kinds[name])}"
+            for name, (low, high) in self.workspace.items()
+            if not low - slack <= pose[name] <= high + slack
+        )
 
     @cached_property
     def _warned(self) -> None:

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import shlex
-import sys
 from pathlib import Path
 from typing import Any
 
-from . import machine_argument
-from .values import assignment, pose_from, positive
+from . import machine_argument, pose_argument
+from .values import positive
+from .wording import command_line
 
 NAME = "report"
 HELP = "one self-contained page: mode shapes in 3D, frequency responses, weak modes, energies, sources of every number"
@@ -17,19 +16,11 @@ HELP = "one self-contained page: mode shapes in 3D, frequency responses, weak mo
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The machine, the poses, and where the report goes."""
-    parser.add_argument("machine", help="installed name, machine.yaml or its folder")
+    pose_argument.add_machine(parser)
     parser.add_argument(
         "-o", "--output", type=Path, required=True, metavar="DIR", help="folder of the report, made if need be"
     )
-    parser.add_argument(
-        "--pose",
-        nargs="+",
-        action="append",
-        type=assignment,
-        default=[],
-        metavar="NAME=VALUE",
-        help="such as nutation=10deg z=1275mm (may be repeated); default: the reference pose",
-    )
+    pose_argument.add_poses(parser, "the reference pose")
     parser.add_argument("-n", "--count", type=positive, default=8, help="how many modes are shown (default 8)")
     parser.add_argument(
         "--damping",
@@ -48,17 +39,11 @@ def run(options: argparse.Namespace) -> dict[str, Any]:
 
     check_folder(options.output)
     machine = machine_argument.changed(options)
-    kinds = machine.kinematics.task.coordinates
-    poses = [pose_from(each, kinds) for each in options.pose] or [{}]
-    files = write_report(machine, options.output, poses, options.count, options.damping, _command())
+    poses = pose_argument.poses_of(machine, options) or [{}]
+    files = write_report(machine, options.output, poses, options.count, options.damping, command_line())
     return {"machine": machine.name, "page": str(files[0]), "files": [str(file) for file in files]}
 
 
 def show(outcome: dict[str, Any]) -> str:
     """Where to look."""
     return f"report of {outcome['machine']}: {outcome['page']}\n({len(outcome['files'])} files beside each other)"
-
-
-def _command() -> str:
-    """The command line as it was given."""
-    return shlex.join(["prs-model", *sys.argv[1:]])

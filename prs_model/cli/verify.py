@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import argparse
-import shlex
-import sys
 import textwrap
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..machine import Machine, load_machine
-from . import machine_argument
+from . import machine_argument, pose_argument
 from .grids import grid_from
 from .table import table
-from .values import assignment, pose_from, positive
+from .values import assignment, positive
+from .wording import command_line
 
 if TYPE_CHECKING:
     from ..verification import VerificationReport
@@ -37,7 +36,7 @@ class Outcome(dict[str, Any]):
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The machine, the poses, what is compared, and where the results go."""
-    parser.add_argument("machine", help="installed name, machine.yaml or its folder")
+    pose_argument.add_machine(parser)
     _add_poses(parser)
     parser.add_argument("-n", "--count", type=positive, default=8, help="how many modes (default 8)")
     parser.add_argument(
@@ -79,16 +78,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_poses(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--pose",
-        nargs="+",
-        action="append",
-        type=assignment,
-        default=[],
-        metavar="NAME=VALUE",
-        help="such as nutation=10deg z=1275mm (may be repeated); default: the reference pose and those of the "
-        "machine's verification section, else the bounds of its workspace",
-    )
+    default = "the reference pose and those of the machine's verification section, else the bounds of its workspace"
+    pose_argument.add_poses(parser, default)
     parser.add_argument(
         "--grid",
         nargs="+",
@@ -138,16 +129,15 @@ def _verified(machine: Machine, options: argparse.Namespace) -> Outcome:
     reports = [verify(machine, poses, curve=curve, in_place=options.bounds, **settings)]
     for factor in options.stiffness:
         reports.append(verify(with_joint_stiffness(machine, factor), poses, joint_stiffness=factor, **settings))
-    files = () if options.output is None else write_all(reports, options.output, _command())
+    files = () if options.output is None else write_all(reports, options.output, command_line())
     return Outcome(reports, files)
 
 
 def _poses(machine: Machine, options: argparse.Namespace) -> list[dict[str, float]]:
     from ..verification import default_poses, grid_poses, random_poses
 
-    kinds = machine.kinematics.task.coordinates
-    poses = [pose_from(each, kinds) for each in options.pose]
-    poses += grid_poses(machine, grid_from(options.grid, kinds)) if options.grid else ()
+    poses = pose_argument.poses_of(machine, options)
+    poses += grid_poses(machine, grid_from(options.grid, machine.kinematics.task.coordinates)) if options.grid else ()
     poses = poses or list(default_poses(machine))
     return [*poses, *(random_poses(machine, options.random, options.seed) if options.random else ())]
 
@@ -169,11 +159,6 @@ def _cache(options: argparse.Namespace) -> Path | None:
         return None
     folder = user_cache_path("prs-model", appauthor=False)
     return folder if options.size is None else folder / f"size_{options.size:g}"
-
-
-def _command() -> str:
-    """The command line as it was given."""
-    return shlex.join(["prs-model", *sys.argv[1:]])
 
 
 def _factor(text: str) -> float:

@@ -1,8 +1,10 @@
-"""What the library says of arguments and entries, in words of the command line."""
+"""The words of the command line: as it was given, and for what the library says of arguments and entries."""
 
 from __future__ import annotations
 
 import re
+import shlex
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -19,6 +21,11 @@ _SAID = (
     (r"; correct 'source'", ""),
     (r"\b(modes|coupling|grounded|clamped): ", r"--\1: "),
 )
+
+
+def command_line() -> str:
+    """The command line as it was given."""
+    return shlex.join(["prs-model", *sys.argv[1:]])
 
 
 @contextmanager

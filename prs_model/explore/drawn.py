@@ -9,7 +9,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..modes import Modes
 from ..reduction import Surface
-from ..report.stand_in import stand_in
+from ..reduction.stand_in import stand_in
 from ..synthesis import System
 
 _THICKNESS = 0.02  # of bars, over the machine's size

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 
 from ..description.expand import instances
 from ..joints import ElasticJoint
@@ -29,7 +28,7 @@ def elastic_entries(machine: Machine) -> tuple[str, ...]:
 def scaled_joints(machine: Machine, factors: Factors) -> tuple[ElasticJoint, ...]:
     """The machine's joints with their stiffness, the drives' included, times the factors."""
     by_name = {name: factor for entry, factor in factors.items() for name in _names(machine, entry)}
-    return tuple(_scaled(joint, by_name.get(joint.name, 1.0)) for joint in machine.joints)
+    return tuple(joint.scaled(by_name.get(joint.name, 1.0)) for joint in machine.joints)
 
 
 def parts_under(machine: Machine, factors: Factors) -> Mapping[str, SuperElement | TravellingElement]:
@@ -43,15 +42,3 @@ def _names(machine: Machine, entry: str) -> list[str]:
     """The joints that an entry stands for."""
     file = machine.description.file
     return [instance.name for instance in instances(entry, file.joints[entry].per, file.symmetry)]
-
-
-def _scaled(joint: ElasticJoint, factor: float) -> ElasticJoint:
-    stages = tuple(
-        replace(
-            stage,
-            sides=tuple(replace(side, law=side.law.scaled(factor)) for side in stage.sides),
-            factor=stage.factor * factor,
-        )
-        for stage in joint.stages
-    )
-    return replace(joint, stages=stages)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pinocchio as pin
@@ -78,6 +78,11 @@ class ElasticStage:
         law = along_axes({self.free: drive_compliance(self.drive, values[self.driven])})
         return (*self.sides, Side(None, _place(self.drive.at), law.scaled(self.factor)))
 
+    def scaled(self, factor: float) -> ElasticStage:
+        """The stage with `factor` times the stiffness, its drive's included."""
+        sides = tuple(replace(side, law=side.law.scaled(factor)) for side in self.sides)
+        return replace(self, sides=sides, factor=self.factor * factor)
+
     def lumped(self, values: Mapping[str, float]) -> JointCompliance:
         """All its sides gathered at the origin of its frame (eq. 11, 12)."""
         return parallel([side.law.moved(_action(side.place)) for side in self.at(values)])
@@ -97,6 +102,10 @@ class ElasticJoint:
     def moves(self) -> bool:
         """Whether it has an axis along or about which it moves: bearings do, bolts do not."""
         return any(stage.free is not None for stage in self.stages)
+
+    def scaled(self, factor: float) -> ElasticJoint:
+        """The joint with `factor` times the stiffness, its drives' included; what is rigid or free stays so."""
+        return replace(self, stages=tuple(stage.scaled(factor) for stage in self.stages))
 
     def springs(self, values: Mapping[str, float], placement: Placement) -> list[Spring]:
         """The springs in one configuration (eq. 9-14).
@@ -130,10 +139,10 @@ def elastic_joints(description: MachineDescription) -> tuple[ElasticJoint, ...]:
         ElasticJoint(
             name,
             joint.between,
-            tuple(_stage(stage, urdf, float(joint.stiffness_factor or 1.0)) for stage in joint.stages or (joint,)),
+            tuple(_stage(stage, urdf) for stage in joint.stages or (joint,)),
             bool(joint.stages),
             joint.as_printed,
-        )
+        ).scaled(float(joint.stiffness_factor or 1.0))
         for name, joint in description.joints.items()
     )
 
@@ -162,15 +171,15 @@ def elastic_law(law: ElasticLaw, free: int | None) -> JointCompliance:
     return JointCompliance(np.eye(6)[:, constrained], compliance[np.ix_(constrained, constrained)])
 
 
-def _stage(stage: Stage, urdf: Urdf, factor: float) -> ElasticStage:
+def _stage(stage: Stage, urdf: Urdf) -> ElasticStage:
     free = free_axis(stage, urdf)
     if stage.interfaces:
         faces = [(face.name, _place(face.at), elastic_law(face, free)) for face in stage.interfaces]
     else:
         faces = [(None, pin.SE3.Identity(), elastic_law(stage, free))]
-    sides = tuple(Side(name, place, law.scaled(factor)) for name, place, law in faces)
+    sides = tuple(Side(*face) for face in faces)
     frame = urdf.joints[stage.urdf].child if stage.urdf is not None else str(stage.frame)
-    return ElasticStage(frame, sides, stage.drive, stage.urdf, free, factor)
+    return ElasticStage(frame, sides, stage.drive, stage.urdf, free)
 
 
 def _place(at: tuple[float, float, float] | None) -> pin.SE3:

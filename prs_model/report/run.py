@@ -19,7 +19,7 @@ from .page import Content, Pose, environment, page
 from .scene import scene_of
 from .sources import entries
 from .still import draw_still
-from .study import Study, outside_workspace, study
+from .study import Study, study
 
 if TYPE_CHECKING:
     from ..machine import Machine
@@ -52,7 +52,7 @@ def write_report(
     with _warnings_logged() as warnings:
         studies = [study(machine, pose, number, count, damping) for number, pose in enumerate(poses, start=1)]
         parts, said = parts_of(machine)
-    outside = [text for each in studies for text in outside_workspace(machine, each.pose)]
+    outside = [f"pose {each.text} is {said}" for each in studies for said in machine.outside_workspace(each.pose)]
     standing = (*machine.loose_bodies(), *machine.wide_joints(), *said)
     made = tuple(_pose(each, studies[0], folder) for each in studies)
     content = Content(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from .stand_in import stand_in
+from ..reduction.stand_in import stand_in
 
 if TYPE_CHECKING:
     from ..modes import Modes

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arrays import FloatArray
-from ..readable import pose_text, readable, readable_range
+from ..readable import pose_text
 from ..response.damping import damping_of, is_proportional, modal_ratios
 
 if TYPE_CHECKING:
@@ -89,14 +89,3 @@ def _response(modes: Modes, damping: Damping) -> FrequencyResponse | None:
         return None
     frequencies = np.linspace(0.1 * elastic[0], 1.25 * elastic[-1], _LINES)
     return modes.system.modes(modes.system.size).frequency_response(frequencies, damping)
-
-
-def outside_workspace(machine: Machine, pose: Mapping[str, float]) -> tuple[str, ...]:
-    """A sentence for each coordinate of a pose [m, rad] that lies beyond the stated workspace."""
-    kinds, slack = machine.kinematics.task.coordinates, 1e-9
-    return tuple(
-        f"pose {pose_text(pose, kinds)} is outside the stated workspace: {name} {readable(pose[name], kinds[name])}, "
-        f"workspace {readable_range(low, high, kinds[name])}"
-        for name, (low, high) in machine.workspace.items()
-        if not low - slack <= pose[name] <= high + slack
-    )

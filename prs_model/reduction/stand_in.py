@@ -8,8 +8,8 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..finite_elements.rigid_motion import cross_matrix, transfer
-from ..reduction import SuperElement
-from ..reduction.surface import Surface
+from .super_element import SuperElement
+from .surface import Surface
 
 _CORNERS = np.array(list(product((-0.5, 0.5), repeat=3)))
 _FACES = np.array(
