@@ -18,7 +18,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
+from scipy.interpolate import BSpline, make_interp_spline
 
 from ..arrays import FloatArray, IntArray
 from ..errors import PrsError
@@ -33,10 +33,11 @@ from .surface import Surface
 class TravellingElement:
     """Super-elements of one part at increasing values of a joint, all of the same layout.
 
-    stations: (s,) joint values [m or rad]; elements: one per station. In between, everything follows the cubic spline
-    weights w_k(q) of the stations. Motions are interpolated as seen from the body origin and carried to the node
-    afterwards, so rigid motions are exact: ``motion = X(r(q)) sum_k w_k X(-r_k) motion_k``. Matrices are interpolated
-    in flexibility form (see `flexibility_form`), in which they are smooth along a slender part too.
+    stations: (s,) joint values [m or rad]; elements: one per station. In between, everything follows weights w_k(q):
+    the cardinal splines of degree five on the stations (s - 1 where these are fewer), whose four continuous derivatives
+    keep frequencies smooth in the pose. Motions are interpolated as seen from the body origin and carried to the
+    node afterwards, so rigid motions are exact: ``motion = X(r(q)) sum_k w_k X(-r_k) motion_k``. Matrices are
+    interpolated in flexibility form (see `flexibility_form`), in which they are smooth along a slender part too.
 
     products: (s, s, n, n), V_i^T M V_j of the stations' bases V_k, so that the mass is that of the interpolated shapes;
     without them it is interpolated entry by entry. contact: coordinates whose stiffness is interpolated through its
@@ -136,8 +137,9 @@ class TravellingElement:
             yield Check("mass is the same everywhere", _largest(spread, rigid[0]), 1e-6, cause)
 
     @cached_property
-    def _cardinal(self) -> CubicSpline:
-        return CubicSpline(self.stations, np.eye(len(self.stations)))
+    def _cardinal(self) -> BSpline:
+        s = len(self.stations)
+        return make_interp_spline(self.stations, np.eye(s), k=min(5, s - 1))
 
     @cached_property
     def _positions(self) -> FloatArray:

@@ -73,6 +73,18 @@ def test_stations_are_met_exactly(element):
         assert here.surface.recovery == pytest.approx(there.surface.recovery, abs=1e-6)
 
 
+@pytest.mark.parametrize("count", [2, 3, 5, 6, 9])
+def test_weights_are_splines_of_degree_five_or_as_high_as_stations_allow(element, count):
+    """Polynomials of that degree are met everywhere; a cubic would meet the third only."""
+    here = replace(
+        element, stations=np.linspace(0.1, 0.5, count), elements=(element.elements[0],) * count, products=None
+    )
+    values = np.linspace(0.1, 0.5, 401)
+    weights = np.array([here.weights(value) for value in values])
+    for degree in range(min(5, count - 1) + 1):
+        assert weights @ here.stations**degree == pytest.approx(values**degree, abs=1e-13)
+
+
 def test_frequencies_follow_the_stroke_without_jumps(element):
     """Second differences over 2.5 mm steps stay small: facets that come and go would show as jumps of 1 %."""
     path = np.array([loaded_frequencies(element.at(value)) for value in np.arange(0.2, 0.4, 0.0025)])
