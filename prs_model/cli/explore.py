@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+import sys
+from functools import partial
 from typing import Any
 
 from . import machine_argument, pose_argument
@@ -30,7 +32,8 @@ def run(options: argparse.Namespace) -> dict[str, Any]:
     check_port(options.port)
     machine = machine_argument.changed(options)
     configuration = pose_argument.configuration_at(machine, options)
-    solved = explore(machine, configuration.pose, count=options.count, port=options.port, browser=options.browser)
+    how = {"count": options.count, "port": options.port, "browser": options.browser}
+    solved = explore(machine, configuration.pose, **how, tell=partial(print, file=sys.stderr, flush=True))
     return {**pose_argument.where(machine, configuration), "solved": solved}
 
 

@@ -50,9 +50,10 @@ def add_plot(gui: viser.GuiApi, response: FrequencyResponse, note: str) -> viser
     return gui.add_uplot(
         curves(response),
         series=tuple(lines),
-        title=f"Receptance at the tool point, {note}",
+        title=f"Receptance, {note}",
         scales={"x": {"time": False}, "y": {"distr": 3}},
-        axes=({"label": "frequency [Hz]"}, {"label": "µm/N", "size": 70}),
+        axes=({"label": "frequency [Hz]", "space": 30}, {"label": "µm/N", "size": 60}),
+        padding=(16, 8, 0, 0),
         height=300,
     )
 

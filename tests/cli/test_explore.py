@@ -17,7 +17,7 @@ from tests.cli.test_cli import run
 @pytest.mark.skipif(os.name == "nt", reason="Ctrl-C is a signal elsewhere")
 def test_the_page_answers_until_ctrl_c_and_the_result_is_one_json_object() -> None:
     pytest.importorskip("viser")
-    command = [sys.executable, "-m", "prs_model", "explore", "hexapod", "--port", "0", "--json"]
+    command = [sys.executable, "-m", "prs_model", "explore", "hexapod", "--port", "0", "--json", "--quiet"]
     heard = {"preexec_fn": lambda: signal.signal(signal.SIGINT, signal.SIG_DFL)}  # shells mute it for background jobs
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **heard) as process:
         try:

@@ -94,3 +94,18 @@ def test_a_coordinate_without_freedom_has_no_slider(serve: Serve) -> None:
     session = serve(machine)
     assert list(session.page.pose) == ["y", "z", "rx", "ry", "rz"]
     assert session.page.question().pose == machine.reference_pose
+
+
+def test_only_its_own_page_may_connect(serve: Serve) -> None:
+    """A page from elsewhere, or from here under another name, could otherwise move the sliders."""
+    viser = pytest.importorskip("viser")
+    client = pytest.importorskip("websockets.sync.client")
+    refused = pytest.importorskip("websockets.exceptions").InvalidStatus
+    session = serve(prs.load_machine("hexapod"))
+    port = session.server.get_port()
+    how = {"subprotocols": [f"viser-v{viser.__version__}"], "open_timeout": 10.0}
+    for origin in (None, "http://127.0.0.1:1", f"http://rebound.example:{port}", "null"):
+        with pytest.raises(refused, match="HTTP 403"):
+            client.connect(f"ws://127.0.0.1:{port}", origin=origin, **how)
+    with client.connect(f"ws://127.0.0.1:{port}", origin=session.address, **how) as connection:
+        assert connection.recv(timeout=10.0)
