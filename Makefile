@@ -38,7 +38,7 @@ parts: $(VENV)/.fem $(VENV)/.mesh
 
 # Redraws the pictures of the documentation.
 pictures: $(VENV)/.test
-	$(BIN)/prs-model modes head_3prs -n 8 --picture docs/pictures/head_3prs_modes.png
+	$(BIN)/python docs/pictures/redraw.py
 
 $(VENV)/.pip:
 	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "prs-model needs Python 3.11 or later: make PYTHON=python3.11 ...")'
