@@ -1,0 +1,40 @@
+"""Results larger than memory: arrays that read their pieces when they are asked for, and not before."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from ..errors import MissingExtraError
+from .store import Store
+
+if TYPE_CHECKING:
+    import dask.array
+    from numpy.typing import NDArray
+
+
+def lazy(store: Store) -> dict[str, dask.array.Array]:
+    """The results of all pieces as arrays of Dask, one chunk each piece.
+
+    A dataset of them is written to NetCDF or Zarr chunk by chunk. Raises PrsError for a first piece that is missing or
+    damaged; of others that is said when they are read.
+    """
+    try:
+        import dask.array as da
+        from dask.delayed import delayed
+    except ImportError as error:
+        raise MissingExtraError("dask", "cluster", "results larger than memory") from error
+
+    def array(name: str, like: NDArray[Any]) -> da.Array:
+        shapes = {index: (stop - start, *like.shape[1:]) for index, (start, stop) in store.chunks.items()}
+        parts = [
+            da.from_delayed(delayed(_read, pure=True)(store, index, name), shape, like.dtype)
+            for index, shape in shapes.items()
+        ]
+        whole: da.Array = da.concatenate(parts)
+        return whole
+
+    return {name: array(name, values) for name, values in store.read(0).items()}
+
+
+def _read(store: Store, index: int, name: str) -> NDArray[Any]:
+    return store.read(index, name)[name]
