@@ -51,8 +51,10 @@ class Poses:
         """Poses start .. stop - 1 (m, d) [m, rad]."""
         if self.points is not None:
             return self.points[start:stop].copy()
-        places = np.unravel_index(np.arange(start, min(stop, self.size)), self.shape)
-        return np.column_stack([axis[place] for axis, place in zip(self.axes, places, strict=True)])
+        numbers = np.arange(start, min(stop, self.size))
+        places = np.unravel_index(numbers, self.shape) if self.axes else ()
+        columns = [axis[place] for axis, place in zip(self.axes, places, strict=True)]
+        return np.array(columns).reshape(len(columns), len(numbers)).T.copy()
 
     def varying(self) -> tuple[int, ...]:
         """The coordinates (their numbers) of which more than one value occurs."""

@@ -66,8 +66,8 @@ def _in_order(quantities: object) -> tuple[str, ...]:
 
 def _band(band: object) -> tuple[float, float]:
     pair = tuple(band) if isinstance(band, tuple | list) else ()
-    if len(pair) != 2 or not all(map(_is_number, pair)) or not 0.0 <= pair[0] < pair[1]:
-        raise PrsError(f"band: found {band!r:.60}, expected (lowest, highest) in Hz, the lowest not below zero")
+    if len(pair) != 2 or not all(map(_is_number, pair)) or not 0.0 < pair[0] < pair[1]:
+        raise PrsError(f"band: found {band!r:.60}, expected (lowest, highest) in Hz, the lowest above zero")
     return float(pair[0]), float(pair[1])
 
 

@@ -1,0 +1,115 @@
+"""The truth at one pose, by the library's own analyses; every fast path is held against it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..errors import PrsError
+from ..linear_algebra import positive_definite_pencil
+from ..response.modal_equations import modal_equations
+from .peaks import largest, places
+from .quantities import Block, Labels, blank, labels
+from .request import Request
+
+if TYPE_CHECKING:
+    from ..kinematics import Configuration
+    from ..machine import Machine
+    from ..modes import Modes
+
+DENSE = 2
+"""Code of `proof`: all modes of the whole system, LAPACK."""
+
+_EXTRA = 4  # modes above those asked for, between which identities are followed
+_ROUNDING = 1e-12
+
+
+def at_pose(machine: Machine, configuration: Configuration, request: Request) -> Block:
+    """A block of one pose: what machine.assemble, System and Modes say there.
+
+    What a machine that can move without straining anything does not have (compliance, its shares, peaks) is NaN.
+    Raises PrsError where fewer modes exist than were asked for.
+    """
+    system = machine.assemble(configuration)
+    with_peaks = "frf_peak" in request.quantities
+    modes = system.modes(system.size if with_peaks else request.n_modes + _EXTRA)
+    check_count(request, len(modes.frequencies))
+    labelled = labels(machine, request)
+    block = blank(request, labelled, 1)
+    block["frequency"][0] = modes.frequencies[: request.n_modes]
+    block["bound"][0] = _ROUNDING
+    block["proof"][0] = DENSE
+    _add_energies(block, modes, request, labelled)
+    if positive_definite_pencil(system.mass, system.stiffness)[0] == 0.0:
+        _add_compliances(block, modes, request)
+    if with_peaks:
+        peaks, frequencies = _peaks(modes, request)
+        block["frf_peak"][0], block["frf_peak_frequency"][0] = peaks, frequencies
+    if "identity" in request.quantities:
+        some = slice(request.n_modes + _EXTRA)
+        block["vectors"] = _with_mass(modes)[None, :, some]
+        block["frame_frequency"] = modes.frequencies[None, some]
+    return block
+
+
+def check_count(request: Request, available: int) -> None:
+    """Raises PrsError where a machine has fewer modes than a request asks for."""
+    if request.n_modes > available:
+        raise PrsError(f"n_modes: found {request.n_modes}, expected at most {available}: the machine has no more")
+
+
+def check_damping(machine: Machine, request: Request) -> None:
+    """Raises PrsError where peaks are asked for of a machine without any damping."""
+    damping = machine.description.file.damping
+    ratios = np.any(damping.modal) or damping.rayleigh is not None
+    if "frf_peak" in request.quantities and not ratios and not damping.joints:
+        raise PrsError(
+            f"frf_peak: the description of '{machine.name}' has no damping, without which peaks are infinite; add an "
+            "entry such as damping: {modal: 0.02}"
+        )
+
+
+def _add_energies(block: Block, modes: Modes, request: Request, labelled: Labels) -> None:
+    for quantity, dim, shares in (
+        ("kinetic_energy", "body", modes.kinetic_energy),
+        ("strain_energy", "member", modes.strain_energy),
+    ):
+        if quantity in request.quantities:
+            found = shares()
+            block[quantity][0] = np.array([found[str(name)][: request.n_modes] for name in labelled[dim]]).T
+
+
+def _add_compliances(block: Block, modes: Modes, request: Request) -> None:
+    if "static_compliance" in request.quantities:
+        block["static_compliance"][0] = modes.static_compliance()
+    if "flexibility_share" in request.quantities:
+        block["flexibility_share"][0] = modes.flexibility_shares()[: request.n_modes]
+
+
+def _peaks(modes: Modes, request: Request) -> tuple[FloatArray, FloatArray]:
+    """Largest receptance (3,) along u, v, w, and its frequency (3,) [Hz], all modes superposed."""
+    equations = modal_equations(modes, modes.system.damping_model)
+    omega = np.sqrt(equations.eigenvalues)
+    moving = omega > 0.0
+    rates = np.diag(equations.viscous)[moving] + np.diag(equations.loss)[moving] / omega[moving]
+    assert request.band is not None  # Request sees to it
+    where = np.unique(places(omega[None, moving], 0.5 * (rates / omega[moving])[None], request.band))[None]
+
+    def magnitudes(at: FloatArray) -> FloatArray:
+        response = modes.frf(at[0] / (2.0 * np.pi))
+        return np.abs(response[None, :, range(3), range(3)])
+
+    peaks, at = largest(magnitudes, where)
+    return peaks[0], at[0] / (2.0 * np.pi)
+
+
+def _with_mass(modes: Modes) -> FloatArray:
+    """M^(1/2) times the shapes on all body coordinates (N, k): orthonormal, and alike at poses near each other."""
+    parts = []
+    for name, element in modes.system.elements.items():
+        values, vectors = np.linalg.eigh(element.mass)
+        root = (vectors * np.sqrt(np.maximum(values, 0.0))) @ vectors.T
+        parts.append(root @ modes.body_shapes(name))
+    return np.vstack(parts)
