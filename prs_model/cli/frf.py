@@ -12,7 +12,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..errors import PrsError
 from ..readable import figure
-from . import machine_argument, pose_argument
+from . import damping_argument, machine_argument, pose_argument
 from .table import table
 from .values import positive
 
@@ -51,12 +51,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default="receptance",
         help="displacement, velocity or acceleration per force (default receptance)",
     )
-    parser.add_argument(
-        "--damping",
-        nargs="+",
-        metavar="RATIO",
-        help="modal damping ratio, one or one for each mode; default: as described",
-    )
+    damping_argument.add_damping(parser)
     way = parser.add_mutually_exclusive_group()
     way.add_argument("--direct", action="store_true", help="solve for each frequency instead of adding up modes")
     way.add_argument("-n", "--count", type=positive, help="how many modes, static correction added; default: all")
@@ -80,7 +75,7 @@ def run(options: argparse.Namespace) -> dict[str, Any]:
 
     pairs = ["/".join(pair_of(text)) for text in options.direction]
     given = None if options.range is None else _range(options.range)
-    damping = _damping(options.damping)
+    damping = damping_argument.damping_of(options)
     for file in options.output:
         check_file(file)
     machine = machine_argument.changed(options)
@@ -199,13 +194,3 @@ def _default_range(system: System) -> FloatArray:
     if not elastic.size:
         raise PrsError("--range: the first modes are all at 0 Hz; say which frequencies, such as 10:500:2000")
     return np.linspace(0.1 * elastic[0], 1.25 * elastic[-1], _LINES)
-
-
-def _damping(texts: list[str] | None) -> list[float] | float | None:
-    if texts is None:
-        return None
-    try:
-        ratios = [float(text) for text in texts]
-    except ValueError:
-        raise PrsError(f"--damping: found '{' '.join(texts)}', expected a ratio such as 0.025, or several") from None
-    return ratios[0] if len(ratios) == 1 else ratios

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from . import machine_argument, pose_argument
+from . import damping_argument, machine_argument, pose_argument
 from .values import positive
 from .wording import command_line
 
@@ -22,13 +22,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     pose_argument.add_poses(parser, "the reference pose")
     parser.add_argument("-n", "--count", type=positive, default=8, help="how many modes are shown (default 8)")
-    parser.add_argument(
-        "--damping",
-        nargs="+",
-        type=float,
-        metavar="RATIO",
-        help="modal damping ratio, one or one for each mode; default: as described",
-    )
+    damping_argument.add_damping(parser)
     machine_argument.add_settings(parser)
 
 
@@ -37,10 +31,11 @@ def run(options: argparse.Namespace) -> dict[str, Any]:
     from ..report import write_report
     from ..report.run import check_folder
 
+    damping = damping_argument.damping_of(options)
     check_folder(options.output)
     machine = machine_argument.changed(options)
     poses = pose_argument.poses_of(machine, options) or [{}]
-    files = write_report(machine, options.output, poses, options.count, options.damping, command_line())
+    files = write_report(machine, options.output, poses, options.count, damping, command_line())
     return {"machine": machine.name, "page": str(files[0]), "files": [str(file) for file in files]}
 
 

@@ -26,7 +26,8 @@ def test_report_says_where_it_is(capsys: pytest.CaptureFixture[str], tmp_path: P
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--damping", "1.5"], "found 1.5, expected a ratio below 1"),
+        (["--damping", "1.5"], "damping.modal: found 1.5, expected a ratio below 1, such as 0.025\n"),
+        (["--damping", "2.5%"], "--damping: found '2.5%', expected a ratio such as 0.025"),
         (["--pose", "z=1deg"], "--pose z: found unit 'deg'"),
         (["--pose", "z=9m"], "z 9000 mm"),
         (["--set", "joints.Q.rigid=true"], "Q"),
