@@ -47,6 +47,19 @@ def test_machine_swings(name: str, request: pytest.FixtureRequest) -> None:
         assert said == []
 
 
+def test_what_a_large_face_turns_about_stands_still(hexapod: Path) -> None:
+    """Mode 6 turns the platform, a box whose corners all go equally far, about its middle."""
+    with opened(hexapod / "report.html", 700, 600) as (tab, said):
+        tab.get_by_role("button", name="Top").click()
+        tab.locator("input[name=mode-0]").nth(5).check()
+        green = at_phase(tab, 0)[:, :, 1]  # grows along the colour scale
+        row, column = (length // 2 for length in green.shape)
+        middle, outside = green[row + 10 : row + 20, column - 20 : column - 10], green[row - 60 : row + 60]
+        assert middle.mean() < 70.0
+        assert outside[:, column - 100 : column - 60].mean() > middle.mean() + 30.0
+        assert said == []
+
+
 def test_controls_work_by_mouse(head: Path) -> None:
     with opened(head / "report.html") as (tab, said):
         start = at_phase(tab, 90)
