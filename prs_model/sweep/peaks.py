@@ -44,7 +44,7 @@ def largest(magnitudes: Magnitudes, omega: FloatArray) -> tuple[FloatArray, Floa
 
 
 def _top(at: FloatArray, value: FloatArray) -> FloatArray:
-    """Lowest point (m, c) of the parabola through 1 / |h|^2 at omega^2 (m, 3, c); the middle one where there is none."""
+    """Lowest point (m, c) of the parabola through 1 / |h|^2 at omega^2 (m, 3, c); the middle where none."""
     x = at**2
     y = (value[:, 1:2] / np.maximum(value, np.finfo(float).tiny)) ** 2
     before, after = x[:, 1] - x[:, 0], x[:, 2] - x[:, 1]

@@ -1,0 +1,194 @@
+"""Which mode a frequency belongs to, followed from pose to pose through crossings.
+
+Modes of neighbouring poses are compared by the squared cosine of their vectors (eq. 23), in a frame that turns
+smoothly with the pose. Identities start where the sweep is nearest the reference pose and spread along a tree over all
+poses: the spanning tree whose steps have the best overlaps, along the rows of a grid where they are equally good.
+
+Round a point where two frequencies meet (a conical intersection) no labelling is both smooth and single-valued on a
+grid that steps over the meeting in some rows and resolves it in others: there the tree leaves a seam, at its weakest
+steps. `overlap` says how far each label is to be trusted.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import linear_sum_assignment
+from scipy.sparse import coo_array, csr_array
+from scipy.sparse.csgraph import breadth_first_order, minimum_spanning_tree
+from scipy.spatial import cKDTree
+
+from ..arrays import BoolArray, FloatArray, IntArray
+from .poses import Poses
+
+_REPEATED = 1e-6  # relative distance of frequencies that count as one
+_ORDER = 1e-6  # what keeping the order is worth beside overlap, which settles ties
+_CLASSES = 20  # of overlap, within which the tree follows rows
+_NEIGHBOURS = 6  # of a pose in a list
+_CHUNK = 20_000  # steps compared at once, to bound memory
+
+
+@dataclass(frozen=True, eq=False)
+class Identities:
+    """Modes followed over N poses, numbered from 1 in the order of frequencies at pose number `start`.
+
+    identity (N, k): whose the i-th frequency is, 0 where nothing led to the pose. frequency (N, k) [Hz] of each
+    identity, NaN there. overlap (N, k): the least squared cosine of a step on the way, of each identity.
+    """
+
+    start: int
+    identity: NDArray[np.int16]
+    frequency: FloatArray
+    overlap: FloatArray
+
+
+def follow(poses: Poses, reference: FloatArray, frequencies: FloatArray, vectors: FloatArray, count: int) -> Identities:
+    """The identities of `count` modes, from all frequencies (N, p) [Hz] and vectors (N, q, p) of a frame.
+
+    reference: the pose (d,) that the start is nearest to. NaN marks poses that are unreachable.
+    """
+    there = np.asarray(np.isfinite(frequencies).all(axis=1))
+    start = _start(poses, reference, there)
+    edges, preference = _grid_edges(poses, start) if poses.is_grid else _list_edges(poses, there)
+    usable = there[edges].all(axis=1)
+    edges, preference = edges[usable], preference[usable]
+    partners, overlaps = _steps(edges, frequencies, vectors)
+    before, step = _tree(edges, preference, overlaps, start, poses.size)
+    place, least, reached = _along(before, step, edges, partners, overlaps, start)
+    identity = np.argsort(place, axis=1)[:, :count] + 1
+    followed = np.take_along_axis(frequencies, place, axis=1)[:, :count]
+    return Identities(
+        start,
+        np.where(reached[:, None], identity, 0).astype(np.int16),
+        np.where(reached[:, None], followed, np.nan),
+        np.where(reached[:, None], least[:, :count], np.nan),
+    )
+
+
+def _start(poses: Poses, reference: FloatArray, there: BoolArray) -> int:
+    """The reachable pose nearest the reference, coordinates measured by their range."""
+    every = poses.block(0, poses.size)
+    away = (every - reference) / np.maximum(np.ptp(every, axis=0), np.finfo(float).eps)
+    distance = np.where(there, np.linalg.norm(away, axis=1), np.inf)
+    return int(np.argmin(distance))
+
+
+def _grid_edges(poses: Poses, start: int) -> tuple[IntArray, FloatArray]:
+    """Pairs of neighbours (e, 2), and what each costs: rows of the last axis least, others least near the start."""
+    numbers = np.arange(poses.size).reshape(poses.shape)
+    here = np.unravel_index(start, poses.shape)
+    edges, costs = [np.zeros((0, 2), dtype=np.intp)], [np.zeros(0)]
+    for axis in range(len(poses.shape)):
+        low = np.delete(numbers, -1, axis=axis)
+        high = np.delete(numbers, 0, axis=axis)
+        places = np.unravel_index(low.ravel(), poses.shape)
+        later = range(axis + 1, len(poses.shape))
+        away = sum(np.abs(places[k] - here[k]) / poses.shape[k] for k in later) / max(len(later), 1)
+        edges.append(np.column_stack([low.ravel(), high.ravel()]))
+        costs.append((len(later) + np.broadcast_to(away, low.size)) / (len(poses.shape) + 1))
+    return np.vstack(edges), np.concatenate(costs)
+
+
+def _list_edges(poses: Poses, there: BoolArray) -> tuple[IntArray, FloatArray]:
+    """Each reachable pose of a list with those nearest to it (e, 2), coordinates by their range, and distances < 1."""
+    numbers = np.flatnonzero(there)
+    points = poses.block(0, poses.size)[numbers]
+    points = points / np.maximum(np.ptp(points, axis=0), np.finfo(float).eps)
+    count = min(_NEIGHBOURS + 1, len(numbers))
+    distances, nearest = cKDTree(points).query(points, k=range(1, count + 1))
+    pairs = np.column_stack([np.repeat(np.arange(len(numbers)), count), nearest.ravel()])
+    pairs, first = np.unique(np.sort(pairs, axis=1), axis=0, return_index=True)
+    own = pairs[:, 0] != pairs[:, 1]
+    distance = np.asarray(distances).ravel()[first][own]
+    return numbers[pairs[own]], distance / (1.0 + distance)
+
+
+def _steps(edges: IntArray, frequencies: FloatArray, vectors: FloatArray) -> tuple[NDArray[np.int16], FloatArray]:
+    """For each step a -> b: the mode at b that each mode at a becomes (e, p), and their overlap (e, p)."""
+    size = frequencies.shape[1]
+    partners, overlaps = np.empty((len(edges), size), dtype=np.int16), np.empty((len(edges), size))
+    for begin in range(0, len(edges), _CHUNK):
+        some = slice(begin, begin + _CHUNK)
+        a, b = edges[some].T
+        cosines = vectors[a].swapaxes(1, 2) @ vectors[b]
+        likeness = _merged(cosines**2, frequencies[a], frequencies[b])
+        partners[some] = _assigned(likeness)
+        overlaps[some] = np.take_along_axis(likeness, partners[some, :, None].astype(np.intp), axis=2)[:, :, 0]
+    return partners, overlaps
+
+
+def _merged(likeness: FloatArray, frequencies_a: FloatArray, frequencies_b: FloatArray) -> FloatArray:
+    """Overlaps (e, p, p) with those of repeated frequencies, whose vectors are arbitrary, replaced by their spaces'."""
+    same_a, same_b = _repeated(frequencies_a), _repeated(frequencies_b)
+    some = np.flatnonzero((same_a.sum(axis=(1, 2)) + same_b.sum(axis=(1, 2))) > 2 * likeness.shape[1])
+    if some.size:
+        sizes_a, sizes_b = same_a[some].sum(axis=2), same_b[some].sum(axis=2)
+        total = same_a[some] @ likeness[some] @ same_b[some]
+        likeness[some] = total / np.minimum(sizes_a[:, :, None], sizes_b[:, None])
+    return likeness
+
+
+def _repeated(frequencies: FloatArray) -> FloatArray:
+    """(e, p, p): 1 where two frequencies of a pose are one, themselves included, else 0."""
+    apart = np.diff(frequencies, axis=1) > _REPEATED * frequencies[:, 1:]
+    cluster = np.concatenate([np.zeros((len(apart), 1)), np.cumsum(apart, axis=1)], axis=1)
+    return np.asarray(cluster[:, :, None] == cluster[:, None], dtype=float)
+
+
+def _assigned(likeness: FloatArray) -> NDArray[np.int16]:
+    """The partner (e, p) of each mode: the likest, or where two have the same one, all different with the best sum."""
+    order = np.arange(likeness.shape[1])
+    worth = likeness - _ORDER * (order[:, None] - order) ** 2
+    partner = np.argmax(worth, axis=2)
+    clash = np.flatnonzero((np.sort(partner, axis=1) != order).any(axis=1))
+    for e in clash:
+        partner[e] = linear_sum_assignment(worth[e], maximize=True)[1]
+    return np.asarray(partner, dtype=np.int16)
+
+
+def _tree(
+    edges: IntArray, preference: FloatArray, overlaps: FloatArray, start: int, count: int
+) -> tuple[IntArray, IntArray]:
+    """The pose before each (N,), itself at the start, -1 where nothing leads; and the number of the edge there (N,)."""
+    grades = np.round(_CLASSES * (1.0 - np.clip(overlaps.min(axis=1, initial=1.0), 0.0, 1.0)))
+    costs = coo_array((1.0 + grades + preference, edges.T), shape=(count, count))
+    tree = minimum_spanning_tree(csr_array(costs))
+    before = np.asarray(breadth_first_order(tree, start, directed=False)[1], dtype=np.intp)
+    before = np.where(before < 0, -1, before)
+    before[start] = start
+    child = np.flatnonzero((before >= 0) & (np.arange(count) != start))
+    low, high = np.minimum(child, before[child]), np.maximum(child, before[child])
+    keys = edges[:, 0] * count + edges[:, 1]
+    order = np.argsort(keys)
+    step = np.full(count, -1, dtype=np.intp)
+    step[child] = order[np.searchsorted(keys, low * count + high, sorter=order)]
+    return before, step
+
+
+def _along(
+    before: IntArray, step: IntArray, edges: IntArray, partners: IntArray, overlaps: FloatArray, start: int
+) -> tuple[IntArray, FloatArray, BoolArray]:
+    """Where each mode of the start is (N, p) at every pose, its least overlap (N, p), and which poses are reached (N,).
+
+    Steps are put together in pairs, pairs of pairs and so on, for all poses at once.
+    """
+    count, size = len(before), partners.shape[1]
+    place, least = np.tile(np.arange(size), (count, 1)), np.ones((count, size))
+    child = np.flatnonzero(step >= 0)
+    forth = edges[step[child], 0] == before[child]
+    there = partners[step[child]].astype(np.intp)
+    place[child] = np.where(forth[:, None], there, np.argsort(there, axis=1))
+    least[child] = np.where(
+        forth[:, None], overlaps[step[child]], np.take_along_axis(overlaps[step[child]], place[child], axis=1)
+    )
+    ancestor = np.where(before >= 0, before, np.arange(count))
+    while True:
+        further = ancestor[ancestor]
+        if np.array_equal(further, ancestor):
+            return place, least, np.asarray((before >= 0) & (ancestor == start))
+        way = place[ancestor]
+        least = np.minimum(least[ancestor], np.take_along_axis(least, way, axis=1))
+        place = np.take_along_axis(place, way, axis=1)
+        ancestor = further
