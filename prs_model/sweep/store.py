@@ -22,7 +22,7 @@ from io import BytesIO
 from math import prod
 from pathlib import Path
 from typing import Any
-from zipfile import BadZipFile, ZipFile
+from zipfile import ZipFile
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +38,8 @@ RUN = "run.json"
 VERSION = 1
 MOST = 4096  # poses in a piece
 PIECES = 64  # a small sweep has about as many, so that several processes share the work
+
+_REMEDY = "run the sweep again with this folder, and it is computed anew"
 
 Block = dict[str, NDArray[Any]]
 """Results of consecutive poses by name; the first axis counts the poses."""
@@ -66,8 +68,8 @@ class Store:
             return self._read(path, ())
         except FileNotFoundError:
             logger.info("%s: no plan yet", self.folder)
-        except _DAMAGE as error:
-            logger.warning("%s: damaged (%s), made anew", path, short(error))
+        except PrsError as error:
+            logger.warning("%s, made anew", error)
         plan = make()
         self._write(path, plan, ())
         return plan
@@ -94,9 +96,10 @@ class Store:
         path = self._path(index)
         try:
             return self._read(path, self._span(index), names)
-        except _DAMAGE as error:
-            what = "there is no such piece" if isinstance(error, FileNotFoundError) else f"damaged ({short(error)})"
-            raise PrsError(f"{path}: {what}; run the sweep again with this folder, and it is computed anew") from error
+        except FileNotFoundError as error:
+            raise PrsError(f"{path}: there is no such piece; {_REMEDY}") from error
+        except PrsError as error:
+            raise PrsError(f"{error}; {_REMEDY}") from error
 
     def gather(self) -> Block:
         """All results in memory. Raises PrsError for a piece that is missing or damaged."""
@@ -108,13 +111,12 @@ class Store:
         return block
 
     def _is_sound(self, index: int) -> bool:
-        path = self._path(index)
         try:
-            self._read(path, self._span(index))
+            self._read(self._path(index), self._span(index))
         except FileNotFoundError:
             return False
-        except _DAMAGE as error:
-            logger.warning("%s: damaged (%s), computed again", path, short(error))
+        except PrsError as error:
+            logger.warning("%s, computed again", error)
             return False
         return True
 
@@ -124,36 +126,32 @@ class Store:
     def _span(self, index: int) -> tuple[int, int]:
         return index * self.length, min((index + 1) * self.length, self.size)
 
-    def _header(self, span: tuple[int, ...]) -> str:
-        return json.dumps({"run": fingerprint(self.run), "poses": span})
-
     def _write(self, path: Path, arrays: Mapping[str, NDArray[Any]], span: tuple[int, ...]) -> None:
-        contents = {"header": np.array(self._header(span)), **arrays}
+        header = {"run": fingerprint(self.run), "poses": span, "arrays": list(arrays)}
+        contents = {"header": np.array(json.dumps(header)), **arrays}
         with told(path), whole(path) as file, ZipFile(file, "w") as archive:
             for name, array in contents.items():
                 with archive.open(f"{name}.npy", "w", force_zip64=True) as member:
                     np.lib.format.write_array(member, np.asanyarray(array), allow_pickle=False)
 
     def _read(self, path: Path, span: tuple[int, ...], names: Iterable[str] = ()) -> Block:
-        """Raises one of _DAMAGE."""
-        with ZipFile(path) as file:
-            arrays = {name: _array(file, name) for name in ("header", *(names or _names(file)))}
-        if str(arrays.pop("header")) != self._header(span):
-            raise ValueError("it is of another sweep")
-        return arrays
-
-
-def _names(file: ZipFile) -> list[str]:
-    return [name.removesuffix(".npy") for name in file.namelist() if name != "header.npy"]
+        """Raises FileNotFoundError, or PrsError for what is damaged."""
+        try:
+            with ZipFile(path) as file:
+                header = json.loads(str(_array(file, "header")))
+                if (header["run"], header["poses"]) != (fingerprint(self.run), list(span)):
+                    raise ValueError("it is of another sweep or of other poses")
+                return {name: _array(file, name) for name in names or header["arrays"]}
+        except FileNotFoundError:
+            raise
+        except Exception as error:  # whatever zip, numpy or json make of damaged bytes
+            raise PrsError(f"{path}: damaged ({short(error) or type(error).__name__})") from error
 
 
 def _array(file: ZipFile, name: str) -> NDArray[Any]:
     """An array whose checksum was tested."""
     array: NDArray[Any] = np.lib.format.read_array(BytesIO(file.read(f"{name}.npy")), allow_pickle=False)
     return array
-
-
-_DAMAGE = (OSError, ValueError, KeyError, EOFError, BadZipFile, NotImplementedError)  # what zip and numpy make of it
 
 
 @contextmanager

@@ -1,0 +1,264 @@
+"""A folder of pieces: nothing finished is lost, torn or computed twice, whatever happens to the process."""
+
+import json
+import logging
+import multiprocessing
+import os
+import random
+import signal
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import prs_model as prs
+from prs_model.errors import PrsError
+from prs_model.sweep import store as stores
+from prs_model.sweep.identity import identity
+from prs_model.sweep.lazy import lazy
+from prs_model.sweep.poses import poses_of
+from prs_model.sweep.request import Request
+from prs_model.sweep.store import Store, opened, piece_length
+from tests.sweep.stand_in import RUN, SHAPE, StandIn, evaluated, results, run, run_killed_before_renaming
+
+SIZE = SHAPE[0] * SHAPE[1]
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    return tmp_path / "run"
+
+
+def started(work: Callable[..., None], folder: Path, plan: StandIn) -> Any:
+    """A process at work."""
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(["tests.sweep.stand_in"])
+    process = context.Process(target=work, args=(folder, plan))
+    process.start()
+    return process
+
+
+def sound_pieces(folder: Path) -> set[tuple[int, int]]:
+    """The poses of every piece in a folder, each of which has to be right."""
+    found = set()
+    for path in folder.glob("piece-*"):
+        with np.load(path) as file:
+            start, stop = json.loads(str(file["header"]))["poses"]
+            for name, values in results(start, stop).items():
+                np.testing.assert_array_equal(file[name], values)
+        found.add((start, stop))
+    return found
+
+
+def gathered(folder: Path) -> stores.Block:
+    with opened(folder, RUN, SHAPE) as store:
+        return store.gather()
+
+
+def assert_same(block: stores.Block, expected: stores.Block) -> None:
+    assert block.keys() == expected.keys()
+    for name, values in expected.items():
+        assert block[name].tobytes() == values.tobytes()
+        assert block[name].dtype == values.dtype
+
+
+def test_killed_ten_times_at_random_moments_and_resumed(folder: Path, tmp_path: Path) -> None:
+    plan = StandIn(tmp_path / "journal", seconds=0.02)
+    moments = random.Random(20)
+    finished: set[tuple[int, int]] = set()
+    for _ in range(10):
+        lines = len(evaluated(plan.journal))
+        process = started(run, folder, plan)
+        pieces = moments.randint(1, 5)
+        while process.is_alive() and len(evaluated(plan.journal)) < lines + pieces:
+            time.sleep(0.001)
+        time.sleep(moments.uniform(0.0, 0.04))
+        process.kill()
+        process.join()
+        assert process.exitcode == -signal.SIGKILL
+        assert not finished & set(evaluated(plan.journal)[lines:])
+        assert finished <= sound_pieces(folder)
+        finished = sound_pieces(folder)
+    lines = len(evaluated(plan.journal))
+    run(folder, plan)
+    assert len(finished) >= 10
+    assert finished.isdisjoint(evaluated(plan.journal)[lines:])
+    assert_same(gathered(folder), results(0, SIZE))
+
+
+def test_what_a_killed_process_left_half_written_goes_away(folder: Path, tmp_path: Path) -> None:
+    process = started(run_killed_before_renaming, folder, StandIn(tmp_path / "journal"))
+    process.join()
+    assert process.exitcode == -signal.SIGKILL
+    assert list(folder.glob(".plan.npz.*"))
+    run(folder, StandIn(tmp_path / "journal"))
+    names = {path.name for path in folder.iterdir() if not path.name.startswith("piece-")}
+    assert names == {"run.json", "plan.npz", "lock"}
+    assert_same(gathered(folder), results(0, SIZE))
+
+
+@pytest.mark.parametrize("damage", ["cut", "empty", "flipped", "other", "text"])
+def test_a_damaged_piece_is_computed_again(
+    folder: Path, tmp_path: Path, damage: str, caplog: pytest.LogCaptureFixture
+) -> None:
+    plan = StandIn(tmp_path / "journal")
+    run(folder, plan)
+    plan.journal.unlink()
+    path = folder / "piece-000007.npz"
+    content = path.read_bytes()
+    path.write_bytes(
+        {
+            "cut": content[:-100],
+            "empty": b"",
+            "flipped": content[:2000] + bytes([content[2000] ^ 1]) + content[2001:],
+            "other": (folder / "piece-000008.npz").read_bytes(),
+            "text": b"frequency, 12.3",
+        }[damage]
+    )
+    with opened(folder, RUN, SHAPE) as store:
+        span = store.chunks[7]
+        with pytest.raises(PrsError, match=r"piece-000007.*(damaged|another).*run the sweep again"):
+            store.gather()
+    with caplog.at_level(logging.WARNING, "prs_model"):
+        run(folder, plan)
+    assert "piece-000007.npz: damaged" in caplog.text
+    assert evaluated(plan.journal) == [span]
+    assert_same(gathered(folder), results(0, SIZE))
+
+
+def test_no_flipped_bit_goes_unseen(folder: Path, tmp_path: Path) -> None:
+    with opened(folder, RUN, (3,)) as store:
+        store.write(0, {"frequency": np.ones((1, 2))})
+        path = folder / "piece-000000.npz"
+        sound = path.read_bytes()
+        for place in range(len(sound)):
+            path.write_bytes(sound[:place] + bytes([sound[place] ^ 1 << place % 8]) + sound[place + 1 :])
+            if 0 in store.finished():  # a date or an attribute in the archive
+                np.testing.assert_array_equal(store.read(0)["frequency"], 1.0)
+
+
+def test_the_plan_is_made_once(folder: Path) -> None:
+    made = []
+
+    def make() -> stores.Block:
+        made.append(1)
+        return {"nodes": np.arange(3.0), "names": np.array(["z", "nutation"])}
+
+    for _ in range(3):
+        with opened(folder, RUN, SHAPE) as store:
+            assert_same(store.plan(make), {"nodes": np.arange(3.0), "names": np.array(["z", "nutation"])})
+    assert len(made) == 1
+    (folder / "plan.npz").write_bytes(b"PK")
+    with opened(folder, RUN, SHAPE) as store:
+        store.plan(make)
+    assert len(made) == 2
+
+
+def test_nothing_that_would_be_pickled_is_written(folder: Path) -> None:
+    with opened(folder, RUN, SHAPE) as store:
+        with pytest.raises(ValueError, match="allow_pickle"):
+            store.plan(lambda: {"nodes": np.array([{}])})
+        assert {path.name for path in folder.iterdir()} == {"run.json", "lock"}
+
+
+def test_a_folder_of_another_run_is_refused(folder: Path, tmp_path: Path) -> None:
+    run(folder, StandIn(tmp_path / "journal"))
+    other = RUN.replace('"n_modes":6', '"n_modes":8')
+    with pytest.raises(PrsError, match=r"run: holds another sweep \(request.n_modes: 8, stored 6\)"):
+        opened(folder, other, SHAPE).__enter__()
+    assert_same(gathered(folder), results(0, SIZE))
+
+
+def test_a_folder_with_other_files_is_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "thesis.tex").write_text("")
+    with pytest.raises(PrsError, match=r"thesis\.tex.*expected a new one"):
+        opened(tmp_path, RUN, SHAPE).__enter__()
+    assert [path.name for path in tmp_path.iterdir()] == ["thesis.tex"]
+
+
+@pytest.mark.parametrize("content", ["", "[]", '{"run": 1}', '{"run":{},"format":"x","version":1,"poses_per_piece":3}'])
+def test_a_damaged_beginning_is_told(folder: Path, content: str) -> None:
+    folder.mkdir()
+    (folder / "run.json").write_text(content)
+    with pytest.raises(PrsError, match=r"run\.json: is not of a sweep that can be continued"):
+        opened(folder, RUN, SHAPE).__enter__()
+
+
+def test_a_place_that_cannot_be_written_is_told(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    with pytest.raises(PrsError, match="cannot be written"):
+        opened(tmp_path / "file", RUN, SHAPE).__enter__()
+
+
+def test_one_process_at_a_time_and_a_killed_one_holds_nothing(folder: Path, tmp_path: Path) -> None:
+    process = started(run, folder, StandIn(tmp_path / "journal", seconds=60.0))
+    while not evaluated(tmp_path / "journal"):
+        time.sleep(0.001)
+    with pytest.raises(PrsError, match=f"in use by process {process.pid} on "):
+        opened(folder, RUN, SHAPE).__enter__()
+    process.kill()
+    process.join()
+    with opened(folder, RUN, SHAPE), pytest.raises(PrsError, match=f"in use by process {os.getpid()} on "):
+        opened(folder, RUN, SHAPE).__enter__()
+
+
+def test_results_of_other_poses_are_not_kept(folder: Path) -> None:
+    with opened(folder, RUN, SHAPE) as store:
+        with pytest.raises(PrsError, match=r"piece 2: found arrays of shapes .*expected 10 poses"):
+            store.write(2, results(0, 5))
+        assert not store.finished()
+
+
+def test_a_disk_that_is_full_leaves_no_torn_piece(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with opened(folder, RUN, SHAPE) as store:
+
+        def full(descriptor: int) -> None:
+            raise OSError(28, "No space left on device")
+
+        monkeypatch.setattr(os, "fsync", full)
+        with pytest.raises(PrsError, match=r"piece-000000\.npz: cannot be written \(No space left on device\)"):
+            store.write(0, results(0, 10))
+        assert {path.name for path in folder.iterdir()} == {"run.json", "lock"}
+
+
+@pytest.mark.parametrize("shape", [(1,), (3,), (63,), (100_000,), (4, 1), (1, 100, 3600), (8, 80), (5, 700_000)])
+def test_pieces_cover_every_pose_once(shape: tuple[int, ...]) -> None:
+    size, length = int(np.prod(shape)), piece_length(shape)
+    spans = list(Store(Path(), RUN, size, length).chunks.values())
+    assert [start for start, _ in spans] == [0, *(stop for _, stop in spans[:-1])]
+    assert spans[-1][1] == size
+    assert max(stop - start for start, stop in spans) <= stores.MOST
+
+
+def test_results_are_read_when_they_are_asked_for(folder: Path, tmp_path: Path) -> None:
+    run(folder, StandIn(tmp_path / "journal"))
+    with opened(folder, RUN, SHAPE) as store:
+        arrays = lazy(store)
+        (folder / "piece-000063.npz").unlink()
+        assert arrays["vectors"].shape == (SIZE, 20, 60)
+        frequency = arrays["frequency"].reshape(*SHAPE, 6)
+        np.testing.assert_array_equal(frequency[2, 7].compute(), results(167, 168)["frequency"][0])
+        with pytest.raises(PrsError, match=r"piece-000063\.npz: there is no such piece"):
+            arrays["reason"].compute()
+
+
+def test_a_run_is_known_by_everything_that_decides_it() -> None:
+    machine = prs.load_machine("hexapod")
+
+    def known_by(machine: prs.Machine = machine, request: Request = Request(), **axes: Any) -> str:  # noqa: B008
+        return identity(machine, poses_of(machine, {"z": [0.5, 0.51], **axes}, None), request)
+
+    first = known_by()
+    assert first == known_by(prs.load_machine("hexapod"))
+    others = [
+        known_by(machine.replace({"bodies.platform.options.mass": 11.0})),
+        known_by(request=Request(n_modes=7)),
+        known_by(request=Request(tolerance=1e-7)),
+        known_by(z=[0.5, 0.52]),
+        known_by(z=[0.5, np.nextafter(0.51, 1.0)]),
+        known_by(x=[0.0, 0.01]),
+    ]
+    assert len({first, *others}) == 7
