@@ -17,7 +17,7 @@ from ..errors import PrsError
 from ..linear_algebra import positive_definite_pencil, slowest_rate
 from ..response.damping import is_proportional, modal_rates, modal_ratios
 from ..response.static import solved_scaled
-from ..synthesis.elimination import independent_coordinates
+from .low_modes import pencils
 from .peaks import largest, places
 from .quantities import Block
 from .request import Request
@@ -102,28 +102,19 @@ def _at_rest(systems: Systems, frame: FloatArray) -> tuple[FloatArray, FloatArra
     """
     count = len(systems.mass)
     compliance, residual = np.full((count, 6, 6), np.nan), np.full((count, 4, 3), np.nan)
-    for i in range(count):
-        mass, output = systems.mass[i], systems.output[i]
-        expansion = _independent(systems.constraints[i], mass, systems.stiffness[i])
-        stiffness = expansion.T @ systems.stiffness[i] @ expansion
-        if positive_definite_pencil(expansion.T @ mass @ expansion, stiffness)[0] != 0.0:
+    for i, (mass, stiffness, free) in enumerate(pencils(systems)):
+        if positive_definite_pencil(mass, stiffness)[0] != 0.0:
             continue
-        purged = output[:3].T - mass @ (frame[i] @ (frame[i].T @ output[:3].T))
-        solved = expansion @ solved_scaled(stiffness, expansion.T @ np.hstack([output.T, purged]))
-        compliance[i] = output @ solved[:, :6]
+        loads = free.T @ systems.output[i].T
+        inside = free.T @ (systems.mass[i] @ frame[i])
+        purged = loads[:, :3] - inside @ (frame[i].T @ systems.output[i, :3].T)
+        solved = solved_scaled(stiffness, np.hstack([loads, purged]))
         first = solved[:, 6:]
-        second = expansion @ solved_scaled(stiffness, expansion.T @ (mass @ first))
-        pairs = ((output[:3].T, first), (first, mass @ first), (first, mass @ second), (second, mass @ second))
+        second = solved_scaled(stiffness, mass @ first)
+        compliance[i] = loads.T @ solved[:, :6]
+        pairs = ((loads[:, :3], first), (first, mass @ first), (first, mass @ second), (second, mass @ second))
         residual[i] = [np.einsum("ni,ni->i", a, b) for a, b in pairs]
     return compliance, residual
-
-
-def _independent(constraints: FloatArray, mass: FloatArray, stiffness: FloatArray) -> FloatArray:
-    """All coordinates (n, m) from those that joints leave free, without those that have neither mass nor stiffness."""
-    sizes = np.linalg.norm(constraints, axis=1)
-    expansion, kept = independent_coordinates(constraints, sizes)
-    present = np.any(mass[kept] != 0.0, axis=1) | np.any(stiffness[kept] != 0.0, axis=1)
-    return expansion[:, present]
 
 
 def _reduced(systems: Systems, frame: FloatArray, body: str, matrix: str) -> FloatArray:
