@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
@@ -33,12 +33,19 @@ def report(error: ValidationError, root: type[BaseModel], raw: Any, problems: Pr
         location = tuple(details["loc"])
         if details["type"] == "missing" and location in misspelt:
             continue  # told where the misspelt key is
+        if details["type"] == "too_short" and _has_errors_below(errors, location):
+            continue  # items that are wrong were not counted
         missing = details["type"] == "missing"
         place = (*base, *without_tags(raw, location, missing=missing))
         message = _message(details, root, location)
         if missing and isinstance(location[-1], int):
             place, message = place[:-1], _short_list(details, root, location[:-1])
         problems.add(place, message)
+
+
+def _has_errors_below(errors: Sequence[ErrorDetails], location: Place) -> bool:
+    places = [tuple(each["loc"]) for each in errors]
+    return any(len(place) > len(location) and place[: len(location)] == location for place in places)
 
 
 def _message(details: ErrorDetails, root: type[BaseModel], location: Place) -> str:

@@ -269,8 +269,8 @@ ModalRatios = Annotated[
 class Damping(Section):
     """Damping ratios of the modes, or Rayleigh's two constants; and what joints add to that.
 
-    modal: one ratio for all modes, or one for each; further modes have the last one. joints: by their names, or by
-    those of their instances.
+    modal: one ratio for all modes, or one for each that is not rigid; further modes have the last one. joints: by their
+    names, or by those of their instances.
     """
 
     modal: ModalRatios | None = None

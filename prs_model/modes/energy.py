@@ -14,7 +14,7 @@ import numpy as np
 from ..arrays import FloatArray
 
 if TYPE_CHECKING:
-    from ..synthesis.system import SpringMotion
+    from ..synthesis import System
     from .modes import Modes
 
 Energies = dict[str, FloatArray]
@@ -28,12 +28,21 @@ def kinetic_energy(modes: Modes) -> Energies:
 
 
 def strain_energy(modes: Modes) -> Energies:
-    """phi_b^T K_b phi_b for each body and d^T K_s d for each joint, over their sum, (k,).
+    """`strain_shares` of each mode.
 
     With lambda, the share of a joint is the eigenvalue's derivative with respect to its stiffness factor (where the
-    coordinates do not follow the joints). A joint of the same name as a body is called ``joint ..``.
+    coordinates do not follow the joints).
     """
-    return _shares({**_in_bodies(modes), **{name: each.sum(axis=0) for name, each in _in_joints(modes).items()}})
+    return strain_shares(modes.system, _elastic(modes))
+
+
+def strain_shares(system: System, shapes: FloatArray) -> Energies:
+    """u_b^T K_b u_b for each body and d^T K_s d for each joint, over their sum, (k,), of any motions u (n, k).
+
+    A joint of the same name as a body is called ``joint ..``.
+    """
+    joints = {name: each.sum(axis=0) for name, each in _in_joints(system, shapes).items()}
+    return _shares({**_in_bodies(system, shapes), **joints})
 
 
 def joint_strain_by_direction(modes: Modes) -> Energies:
@@ -43,8 +52,9 @@ def joint_strain_by_direction(modes: Modes) -> Energies:
     each is the energy of that direction, exactly; where directions are coupled (a full matrix, a chain of stages seen
     in the frame of the first) one may be negative.
     """
-    joints = _in_joints(modes)
-    whole = sum(_in_bodies(modes).values()) + sum(each.sum(axis=0) for each in joints.values())
+    system, shapes = modes.system, _elastic(modes)
+    joints = _in_joints(system, shapes)
+    whole = sum(_in_bodies(system, shapes).values()) + sum(each.sum(axis=0) for each in joints.values())
     return {name: _over(each, np.asarray(whole)) for name, each in joints.items()}
 
 
@@ -60,26 +70,26 @@ def by_limb(shares: Mapping[str, FloatArray], limbs: Mapping[str, str]) -> Energ
 _JOINT = "joint "
 
 
-def _in_bodies(modes: Modes) -> Energies:
-    elements = modes.system.elements
+def _elastic(modes: Modes) -> FloatArray:
+    """The shapes, zero where they are rigid motions."""
+    return np.where(modes.is_rigid, 0.0, modes.shapes)
+
+
+def _in_bodies(system: System, shapes: FloatArray) -> Energies:
     return {
-        name: np.where(modes.is_rigid, 0.0, _quadratic(modes.body_shapes(name), element.stiffness))
-        for name, element in elements.items()
+        name: _quadratic(system.expansion[system.blocks[name]] @ shapes, element.stiffness)
+        for name, element in system.elements.items()
     }
 
 
-def _in_joints(modes: Modes) -> Energies:
+def _in_joints(system: System, shapes: FloatArray) -> Energies:
     """Twice the strain energy (6, k) by directions of the joint's frame, its springs together."""
     energy: Energies = {}
-    for spring in modes.system.springs:
-        name = f"{_JOINT}{spring.joint}" if spring.joint in modes.system.elements else spring.joint
-        energy[name] = energy.get(name, 0.0) + np.where(modes.is_rigid, 0.0, _in_spring(modes, spring))
+    for spring in system.springs:
+        name = f"{_JOINT}{spring.joint}" if spring.joint in system.elements else spring.joint
+        strain = spring.displacement @ (system.expansion[spring.rows] @ shapes)
+        energy[name] = energy.get(name, 0.0) + strain * (spring.stiffness @ strain)
     return energy
-
-
-def _in_spring(modes: Modes, spring: SpringMotion) -> FloatArray:
-    strain = spring.displacement @ (modes.system.expansion[spring.rows] @ modes.shapes)
-    return np.asarray(strain * (spring.stiffness @ strain))
 
 
 def _quadratic(shapes: FloatArray, matrix: FloatArray) -> FloatArray:

@@ -6,7 +6,7 @@ its picture surface; of a part without one, the translations of the nodes that b
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -15,15 +15,11 @@ from scipy.optimize import linear_sum_assignment
 
 from ..arrays import FloatArray, IntArray
 from ..errors import PrsError
+from .clusters import GAP, clusters, groups
 from .modes import Modes
 
 if TYPE_CHECKING:
     from ..complete_order import CompleteModes
-
-GAP = 0.01
-"""Modes whose frequencies differ by less than this share are one cluster. A change of the model that moves frequencies
-by a share d turns two modes a gap g apart into each other by an angle of about d / g, so that models which agree to one
-per cent cannot tell modes apart that are closer than that."""
 
 Observation = Mapping[str, FloatArray]
 """Shapes (rows, k) by what is observed: a body's surface, or one of its nodes."""
@@ -104,19 +100,13 @@ def pairing(
     back = subspace_mac(shapes_b, shapes_a, clusters(frequencies_a, gap)).T
     partners = pair_modes(np.maximum(there, back))
     numbers = _either(clusters(frequencies_a, gap), clusters(frequencies_b, gap)[partners])
-    for some in _groups(numbers):
+    for some in groups(numbers):
         partners[some] = np.sort(partners[some])
     turned = shapes_b[:, partners]
-    for some in _groups(numbers):
+    for some in groups(numbers):
         left, _, right = np.linalg.svd(turned[:, some].T @ shapes_a[:, some])
         turned[:, some] = turned[:, some] @ (left @ right)
     return Pairing(partners, numbers, mac_of(shapes_a, turned))
-
-
-def clusters(frequencies: FloatArray, gap: float = GAP) -> IntArray:
-    """The cluster number (n,) of ascending frequencies: neighbours closer than the relative gap share one."""
-    apart = np.diff(frequencies) > gap * np.asarray(frequencies)[1:]
-    return np.concatenate([[0], np.cumsum(apart)])
 
 
 def subspace_mac(a: FloatArray, b: FloatArray, numbers: IntArray) -> FloatArray:
@@ -126,7 +116,7 @@ def subspace_mac(a: FloatArray, b: FloatArray, numbers: IntArray) -> FloatArray:
     """
     result = np.empty((a.shape[1], b.shape[1]))
     size = (a**2).sum(axis=0)
-    for some in _groups(numbers):
+    for some in groups(numbers):
         basis = np.linalg.qr(b[:, some])[0]
         share = ((basis.T @ a) ** 2).sum(axis=0) / np.where(size > 0.0, size, 1.0)
         result[:, some] = share[:, None]
@@ -141,8 +131,3 @@ def _either(a: IntArray, b: IntArray) -> IntArray:
             joined = np.unique(numbers[labels == label])
             numbers[np.isin(numbers, joined)] = joined[0]
     return np.unique(numbers, return_inverse=True)[1]
-
-
-def _groups(numbers: IntArray) -> Iterator[IntArray]:
-    """The places of each cluster."""
-    return (np.flatnonzero(numbers == number) for number in np.unique(numbers))

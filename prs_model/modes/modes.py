@@ -14,6 +14,7 @@ from ..linear_algebra import lowest_modes, slowest_rate
 from ..synthesis.system import System
 from . import energy
 from .character import Character, characters
+from .clusters import principal_shapes
 
 if TYPE_CHECKING:
     import xarray
@@ -23,11 +24,16 @@ if TYPE_CHECKING:
     from ..response.quantity import ComplexArray
 
 _RIGID = 1e-8
+_BEYOND = 5  # modes beyond those asked for, so that none is parted from others of its frequency
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Modes:
-    """Natural frequencies [Hz] ascending and mass-normalised shapes (n, k) on the system's coordinates."""
+    """Natural frequencies [Hz] ascending and mass-normalised shapes (n, k) on the system's coordinates.
+
+    Of modes of equal frequency the first has all their motion of the end-reference point along u, the next what is
+    left along v, and so on.
+    """
 
     system: System
     eigenvalues: FloatArray
@@ -119,23 +125,27 @@ class Modes:
         """(6, 6) of the system, exact whatever the number of modes; see System.static_compliance."""
         return self.system.static_compliance(to, at)
 
-    def modal_flexibility(self) -> FloatArray:
-        """(k, 6) [m/N, rad/(N m)]: what each mode gives to the compliance of the end-reference point, eq. (20)."""
+    def modal_flexibility(self, at: str | None = None) -> FloatArray:
+        """(k, 6) [m/N, rad/(N m)]: what each mode gives to the compliance of node `at`, eq. (20)."""
         from ..response.flexibility import modal_flexibility
 
-        return modal_flexibility(self)
+        return modal_flexibility(self, at)
 
-    def flexibility_shares(self) -> FloatArray:
+    def flexibility_shares(self, at: str | None = None) -> FloatArray:
         """(k, 6): `modal_flexibility` over the static compliance by a solve, eq. (21)."""
         from ..response.flexibility import flexibility_shares
 
-        return flexibility_shares(self)
+        return flexibility_shares(self, at)
 
-    def weak_modes(self) -> tuple[WeakMode, ...]:
-        """The modes that give most of the compliance, direction by direction, with the reason in words."""
+    def weak_modes(self, at: str | None = None, least: float = 0.1) -> tuple[WeakMode, ...]:
+        """The modes that make up the compliance of a node, direction by direction, with the reason in words.
+
+        Those with a share of at least `least`, the largest first, and the largest whatever it is; modes of equal
+        frequency are one. at: ``body.node``; default: the end-reference point.
+        """
         from ..response.flexibility import weak_modes
 
-        return weak_modes(self)
+        return weak_modes(self, at, least)
 
     def state_space(
         self,
@@ -169,7 +179,10 @@ def modes_of(system: System, count: int) -> Modes:
     """The lowest `count` modes of a system. Raises PrsError when `count` is not a whole number above zero."""
     check_count(count)
     labels = [" ".join(filter(None, row)) for row in system.index]
-    return Modes(system, *lowest_modes(system.mass, system.stiffness, int(count), labels))
+    found = Modes(system, *lowest_modes(system.mass, system.stiffness, int(count) + _BEYOND, labels))
+    eigenvalues = np.where(found.is_rigid, 0.0, found.eigenvalues)
+    shapes = principal_shapes(system, found.frequencies, found.shapes)
+    return Modes(system, eigenvalues[:count], shapes[:, :count])
 
 
 def check_count(count: object) -> None:

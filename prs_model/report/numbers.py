@@ -73,7 +73,7 @@ def as_dict(study: Study) -> dict[str, Any]:
     return {
         "pose": {name: float(value) for name, value in study.pose.items()},
         "frequencies_hz": modes.frequencies.tolist(),
-        "damping_ratios": None if study.ratios is None else study.ratios.tolist(),
+        "damping_ratios": None if study.ratios is None else _ratios(study),
         "characters": [str(each) for each in modes.characters()],
         "kinetic_energy": {name: share.tolist() for name, share in modes.kinetic_energy().items()},
         "strain_energy": {name: share.tolist() for name, share in modes.strain_energy().items()},
@@ -107,10 +107,16 @@ def write_bytes(path: Path, content: bytes) -> None:
 
 
 def _modes(study: Study) -> Rows:
-    ratios = [""] * len(study.modes.frequencies) if study.ratios is None else study.ratios.tolist()
+    ratios = _ratios(study)
     yield ["mode", "frequency [Hz]", "damping ratio", "what moves", "tool point"]
     for k, each in enumerate(study.modes.characters()):
         yield [k + 1, float(study.modes.frequencies[k]), ratios[k], str(each), each.output]
+
+
+def _ratios(study: Study) -> list[float | None]:
+    """Damping ratios, none of rigid-body modes and where joints damp."""
+    known = [np.nan] * len(study.modes.frequencies) if study.ratios is None else study.ratios.tolist()
+    return [None if np.isnan(each) else each for each in known]
 
 
 def _by_axis(study: Study) -> Rows:

@@ -67,7 +67,7 @@ def complex_modes(system: System, count: int, damping: Damping) -> ComplexModes:
     oscillates = np.flatnonzero(poles.imag > np.maximum(_STILL * slow, 1e-9 * np.abs(poles)))
     chosen = oscillates[np.argsort(np.abs(poles[oscillates]), kind="stable")][:count]
     return ComplexModes(
-        system, poles[chosen], modes.shapes @ _normalised(vectors[: len(equations.eigenvalues), chosen])
+        system, poles[chosen], equations.shapes @ _normalised(vectors[: len(equations.eigenvalues), chosen])
     )
 
 

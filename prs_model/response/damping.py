@@ -22,6 +22,8 @@ from ..description.messages import report
 from ..description.problems import Problems
 from ..description.schema import Damping as Damping
 from ..errors import PrsError, UnknownNameError
+from ..modes.clusters import parted_shapes
+from .quantity import real_numbers
 
 if TYPE_CHECKING:
     from ..synthesis import System
@@ -46,21 +48,27 @@ def damping_of(system: System, given: DampingLike = None) -> Damping:
 
 
 def modal_ratios(damping: Damping, eigenvalues: FloatArray) -> FloatArray:
-    """xi (k,) of modes with eigenvalues (k,) [rad^2/s^2], without what joints add; rigid-body modes have none."""
+    """xi (k,) of modes with eigenvalues (k,) [rad^2/s^2], without what joints add; nan for rigid-body modes, at 0.
+
+    Of a list of ratios the first is that of the first mode that is not rigid; further modes have the last one.
+    """
+    elastic = eigenvalues > 0.0
+    omega = np.sqrt(eigenvalues[elastic])
     if damping.rayleigh is not None:
-        omega = np.sqrt(eigenvalues)
-        moving = omega > 0.0
-        inverse = np.where(moving, 1.0 / np.where(moving, omega, 1.0), 0.0)
-        return np.asarray(0.5 * (damping.rayleigh.alpha * inverse + damping.rayleigh.beta * omega))
-    given = np.atleast_1d(np.array(damping.modal if damping.modal is not None else 0.0, dtype=float))
-    return np.asarray(given[np.minimum(np.arange(len(eigenvalues)), len(given) - 1)])
+        found = 0.5 * (damping.rayleigh.alpha / omega + damping.rayleigh.beta * omega)
+    else:
+        given = np.atleast_1d(np.array(damping.modal if damping.modal is not None else 0.0, dtype=float))
+        found = given[np.minimum(np.arange(len(omega)), len(given) - 1)]
+    ratios = np.full(len(eigenvalues), np.nan)
+    ratios[elastic] = found
+    return ratios
 
 
 def modal_rates(damping: Damping, eigenvalues: FloatArray) -> FloatArray:
     """Diagonal (k,) [1/s] of Phi^T C Phi without what joints add: 2 xi omega, or alpha + beta omega^2."""
     if damping.rayleigh is not None:
         return np.asarray(damping.rayleigh.alpha + damping.rayleigh.beta * eigenvalues)
-    return np.asarray(2.0 * modal_ratios(damping, eigenvalues) * np.sqrt(eigenvalues))
+    return np.nan_to_num(2.0 * modal_ratios(damping, eigenvalues) * np.sqrt(eigenvalues))
 
 
 def viscous_matrix(system: System, damping: Damping) -> FloatArray:
@@ -71,8 +79,8 @@ def viscous_matrix(system: System, damping: Damping) -> FloatArray:
     if not np.any(damping.modal):
         return joints
     modes = system.modes(system.size)
-    momentum = system.mass @ modes.shapes
-    rates = modal_rates(damping, (2.0 * np.pi * modes.frequencies) ** 2)
+    momentum = system.mass @ parted_shapes(system.stiffness, modes.frequencies, modes.shapes)
+    rates = modal_rates(damping, modes.eigenvalues)
     return np.asarray((momentum * rates) @ momentum.T + joints)
 
 
@@ -116,13 +124,21 @@ def _names(system: System, spring: SpringMotion) -> Iterator[str]:
 
 def _entries(given: Mapping[str, Any] | float | Sequence[float] | FloatArray) -> Mapping[str, Any]:
     if isinstance(given, Mapping):
-        return given
-    ratios = np.asarray(given)
-    if ratios.ndim > 1 or ratios.dtype.kind not in "fiu":
-        raise PrsError(
-            f"damping: found {given!r}, expected a ratio such as 0.025, one for each mode, or entries as in the file"
-        )
+        return {name: _plain(value) for name, value in given.items()}
+    expected = "a ratio such as 0.025, one for each mode, or entries as in the file"
+    ratios = real_numbers("damping", given, expected)
+    if ratios.ndim > 1:
+        raise PrsError(f"damping: found an array of shape {ratios.shape}, expected {expected}")
     return {"modal": tuple(ratios.tolist()) if ratios.ndim else ratios.item()}
+
+
+def _plain(value: Any) -> Any:
+    """As a file would have it: tuples for lists and arrays."""
+    if isinstance(value, np.ndarray | np.generic):
+        value = value.tolist()
+    if isinstance(value, Mapping):
+        return {name: _plain(each) for name, each in value.items()}
+    return tuple(_plain(each) for each in value) if isinstance(value, list | tuple) else value
 
 
 def _validated(entries: Mapping[str, Any]) -> Damping:

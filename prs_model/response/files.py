@@ -41,14 +41,14 @@ def check_file(path: Path) -> None:
     check_writable(path)
 
 
-def save(response: FrequencyResponse, path: Path, pairs: Sequence[str] | None = None, title: str = "") -> None:
+def save(response: FrequencyResponse, path: Path, pairs: str | Sequence[str] | None = None, title: str = "") -> None:
     """See FrequencyResponse.save."""
     listed = listed_pairs(pairs)
     check_file(path)
     if path.suffix.lower() in PICTURES:
         from .picture import draw
 
-        draw({"": response}, path, pairs or DIRECTIONS, title)
+        draw({"": response}, path, DIRECTIONS if pairs is None else ["/".join(pair) for pair in listed], title)
         return
     write = write_csv if path.suffix.lower() == ".csv" else write_uff
     with told(path):

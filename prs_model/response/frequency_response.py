@@ -50,7 +50,7 @@ class FrequencyResponse:
         return f"FrequencyResponse({self.quantity} at {self.to} by {self.at}, {len(self.frequencies)} x {band})"
 
     def curve(self, pair: str) -> ComplexArray:
-        """(f,): one entry, such as ``u``, or ``w/u`` for the motion along w by a force along u."""
+        """(f,): one entry, such as ``u``, or ``w/u`` for the motion along w by a force along u. Raises PrsError."""
         response, excitation = pair_of(pair)
         return self.values[:, DIRECTIONS.index(response), DIRECTIONS.index(excitation)]
 
@@ -78,10 +78,10 @@ class FrequencyResponse:
         array.frequency.attrs["units"] = "Hz"
         return array
 
-    def save(self, path: str | Path, pairs: Sequence[str] | None = None, title: str = "") -> None:
+    def save(self, path: str | Path, pairs: str | Sequence[str] | None = None, title: str = "") -> None:
         """Write .csv, .uff (dataset 58, extra `uff`) or a picture .png, .svg, .pdf (extra `plot`), whole or not at all.
 
-        pairs: which entries, such as ("u", "w/u"); default: all, of a picture those on the diagonal.
+        pairs: which entries, such as ("u", "w/u"), or one; default: all, of a picture those on the diagonal.
         Raises PrsError or MissingExtraError.
         """
         from .files import save

@@ -9,11 +9,11 @@ import numpy as np
 from ..arrays import FloatArray
 from ..errors import PrsError
 from ..linear_algebra import positive_definite_pencil
-from .damping import Damping, loss_joints, viscous_matrix
+from .damping import Damping, is_proportional, loss_joints, viscous_matrix
 from .modal_equations import ModalEquations, modal_equations
 from .points import Point
 from .quantity import ComplexArray
-from .residual import with_residual_vectors
+from .residual import is_truncated, with_residual_vectors
 
 if TYPE_CHECKING:
     from ..modes import Modes
@@ -26,13 +26,16 @@ def modal_receptance(
     """H (f, 6, 6) = sum_k phi_to phi_at^T / (omega_k^2 - omega^2 + 2 j xi_k omega_k omega), eq. (18, 19).
 
     The damping term has the j that print lost in eq. (20). Joints that damp couple the modes: their equations are then
-    solved together, for each frequency. static_correction adds residual vectors for the modes left out.
+    solved together, for each frequency. static_correction makes up for the modes left out by residual vectors; these
+    know nothing of what joints do to such modes, so that with joints that damp the system itself is solved.
     """
-    if static_correction:
+    if static_correction and is_truncated(modes):
+        if not is_proportional(damping):
+            return direct_receptance(modes.system, frequencies, damping, to, at)
         modes = with_residual_vectors(modes, np.vstack([to.motion, at.motion]).T)
     omega = 2.0 * np.pi * frequencies
     equations = modal_equations(modes, damping)
-    to_modes, at_modes = to.motion @ modes.shapes, at.motion @ modes.shapes
+    to_modes, at_modes = to.motion @ equations.shapes, at.motion @ equations.shapes
     if equations.is_coupled:
         stiffness = np.diag(equations.eigenvalues) + 1j * equations.loss
         return _solved(stiffness, equations.viscous, np.eye(len(stiffness)), omega, to_modes, at_modes.T)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arrays import FloatArray
+from ..modes.clusters import parted_shapes
 from .damping import Damping, has_loss_factors, is_proportional, loss_joints, modal_rates, viscous_joints
 
 if TYPE_CHECKING:
@@ -16,11 +17,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class ModalEquations:
-    """Lambda (k,) [rad^2/s^2], D (k, k) [1/s] and H (k, k) [rad^2/s^2] of mass-normalised modes.
+    """Lambda (k,) [rad^2/s^2], D (k, k) [1/s] and H (k, k) [rad^2/s^2] of mass-normalised shapes Phi (n, k).
 
     is_coupled: D or H has terms off the diagonal. has_loss: H is not zero.
     """
 
+    shapes: FloatArray
     eigenvalues: FloatArray
     viscous: FloatArray
     loss: FloatArray
@@ -30,9 +32,11 @@ class ModalEquations:
 
 def modal_equations(modes: Modes, damping: Damping) -> ModalEquations:
     """What the modes are subject to under a damping."""
-    system, shapes = modes.system, modes.shapes
+    system = modes.system
+    shapes = parted_shapes(system.stiffness, modes.frequencies, modes.shapes)
     eigenvalues = np.where(modes.is_rigid, 0.0, modes.eigenvalues)
     return ModalEquations(
+        shapes,
         eigenvalues,
         np.diag(modal_rates(damping, eigenvalues)) + viscous_joints(system, damping, shapes),
         loss_joints(system, damping, shapes),

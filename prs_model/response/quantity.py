@@ -9,13 +9,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import FloatArray
-from ..errors import PrsError, UnknownNameError
+from ..errors import PrsError, UnknownNameError, short
 
 Response = Literal["receptance", "mobility", "accelerance"]
 ComplexArray = NDArray[np.complex128]
 
 DIRECTIONS = ("u", "v", "w", "ru", "rv", "rw")
 """Along and about the axes of the output frame."""
+
+_SLOWEST, _FASTEST = 1e-9, 1e9  # Hz
 
 _PER_TIME: dict[Response, str] = {"receptance": "", "mobility": "/s", "accelerance": "/s^2"}
 
@@ -54,7 +56,9 @@ def _is_rotation(direction: str) -> bool:
 
 
 def pair_of(text: str) -> tuple[str, str]:
-    """Response and excitation directions of ``w/u``, or of ``u``, which stands for ``u/u``. Raises UnknownNameError."""
+    """Response and excitation directions of ``w/u``, or of ``u``, which stands for ``u/u``. Raises PrsError."""
+    if not isinstance(text, str):
+        raise PrsError(f"direction: found {short(repr(text))}, expected one such as 'u', or response/excitation: 'w/u'")
     response, _, excitation = text.partition("/")
     for direction in (response, excitation or response):
         if direction not in DIRECTIONS:
@@ -62,21 +66,35 @@ def pair_of(text: str) -> tuple[str, str]:
     return response, excitation or response
 
 
+def listed_pairs(pairs: str | Sequence[str] | None) -> list[tuple[str, str]]:
+    """The directions of texts such as ``w/u``, or of one; all 36 for None. Raises PrsError for an empty list."""
+    if pairs is None:
+        return [(response, excitation) for response in DIRECTIONS for excitation in DIRECTIONS]
+    found = [pair_of(text) for text in ([pairs] if isinstance(pairs, str) else pairs)]
+    if not found:
+        raise PrsError("pairs: found none, expected one at least, such as 'u', or response/excitation: 'w/u'")
+    return found
+
+
 def frequencies_from(values: ArrayLike) -> FloatArray:
-    """(f,) [Hz]. Raises PrsError unless they are numbers above zero."""
-    try:
-        frequencies = np.atleast_1d(np.asarray(values, dtype=float))
-    except (TypeError, ValueError):
-        raise PrsError(f"frequencies: found {values!r}, expected numbers above zero [Hz]") from None
-    wrong = frequencies[~(np.isfinite(frequencies) & (frequencies > 0.0))]
+    """(f,) [Hz]. Raises PrsError unless they are numbers above zero that can be squared."""
+    expected = f"a list of numbers above zero, {_SLOWEST:g} to {_FASTEST:g} [Hz]"
+    frequencies = np.atleast_1d(real_numbers("frequencies", values, expected))
+    wrong = frequencies[(frequencies < _SLOWEST) | (frequencies > _FASTEST)]
     if frequencies.ndim != 1 or not frequencies.size or wrong.size:
         found = f"{wrong[0]:g} Hz" if wrong.size else f"an array of shape {frequencies.shape}"
-        raise PrsError(f"frequencies: found {found}, expected a list of numbers above zero [Hz]")
+        raise PrsError(f"frequencies: found {found}, expected {expected}")
     return frequencies
 
 
-def listed_pairs(pairs: Sequence[str] | None) -> list[tuple[str, str]]:
-    """The directions of texts such as ``w/u``; all 36 for None."""
-    if pairs is None:
-        return [(response, excitation) for response in DIRECTIONS for excitation in DIRECTIONS]
-    return [pair_of(text) for text in pairs]
+def real_numbers(what: str, given: object, expected: str) -> FloatArray:
+    """The array, or the number, that is given. Raises PrsError for what is none, complex, ragged or not finite."""
+    try:
+        array = np.asarray(given)
+    except ValueError:  # lists of unequal lengths
+        array = np.array(None)
+    if array.dtype.kind not in "fiu":
+        raise PrsError(f"{what}: found {short(' '.join(repr(given).split()))}, expected {expected}")
+    if not np.all(np.isfinite(array)):
+        raise PrsError(f"{what}: found {array[~np.isfinite(array)].flat[0]}, expected {expected}")
+    return array.astype(float)

@@ -22,6 +22,11 @@ _NEW = 1e-8  # in the energy norm, so that 1e-16 of the compliance is lost
 _INFINITE = 1e-16  # of the largest 1 / lambda: a motion without mass
 
 
+def is_truncated(modes: Modes) -> bool:
+    """Whether the system has motions beyond these modes."""
+    return len(modes.eigenvalues) < modes.system.size
+
+
 def with_residual_vectors(modes: Modes, loads: FloatArray) -> Modes:
     """The modes, and vectors that stand for those left out in the response to loads (n, c).
 
@@ -43,6 +48,7 @@ def with_residual_vectors(modes: Modes, loads: FloatArray) -> Modes:
         basis, block = np.hstack([basis, block]), mass @ block
     added = basis[:, kept.shape[1] :]
     flexibility, turn = np.linalg.eigh(added.T @ mass @ added)
+    flexibility, turn = flexibility[::-1], turn[:, ::-1]
     flexibility = np.maximum(flexibility, _INFINITE * np.max(1.0 / (modes.eigenvalues - shift)))
     shapes = scale * solve_triangular(factor, added @ turn, lower=True, trans="T") / np.sqrt(flexibility)
     return replace(
@@ -57,7 +63,7 @@ def residual_compliance(modes: Modes, to: Point, at: Point) -> FloatArray:
 
     Raises PrsError when all modes kept are rigid-body modes.
     """
-    if modes.shapes.shape[1] == modes.system.size:
+    if not is_truncated(modes):
         return np.zeros((6, 6))
     _, pencil = _pencil(modes)
     load = at.motion.T - modes.system.mass @ (modes.shapes @ (modes.shapes.T @ at.motion.T))

@@ -82,7 +82,8 @@ def state_space(
         )
     ends = point(modes.system, to), point(modes.system, at)
     k = len(equations.eigenvalues)
-    to_modes, loads, stiffness = ends[0].motion @ modes.shapes, (ends[1].motion @ modes.shapes).T, equations.eigenvalues
+    to_modes, loads = ends[0].motion @ equations.shapes, (ends[1].motion @ equations.shapes).T
+    stiffness = equations.eigenvalues
     rest = np.zeros((6, k))
     c = {
         "receptance": np.hstack([to_modes, rest]),

@@ -21,13 +21,21 @@ def static_compliance(system: System, to: Point, at: Point) -> FloatArray:
 
     Raises PrsError when the machine can move without straining anything.
     """
+    return np.asarray(to.motion @ static_motion(system, at))
+
+
+def static_motion(system: System, at: Point) -> FloatArray:
+    """K^-1 R_at^T (n, 6): how the system gives way to a unit force or moment along and about u, v, w.
+
+    Raises PrsError when the machine can move without straining anything.
+    """
     shift, pencil = positive_definite_pencil(system.mass, system.stiffness)
     if shift != 0.0:
         raise PrsError(
             "the machine can move without straining anything, so that it has no static compliance; expected every body "
             "to be held by joints or drives (prs-model modes shows what moves at 0 Hz)"
         )
-    return np.asarray(to.motion @ solved_scaled(pencil, at.motion.T))
+    return solved_scaled(pencil, at.motion.T)
 
 
 def solved_scaled(matrix: FloatArray, sides: FloatArray) -> FloatArray:

@@ -153,6 +153,19 @@ class System:
 
         return static_compliance(self, point(self, to), point(self, at))
 
+    def static_energy(self, at: str | None = None) -> dict[str, FloatArray]:
+        """Share (6,) of each body and joint in the strain energy under a unit force or moment at node `at`.
+
+        A force along u, v, w or a moment about them, one after the other; the shares of each sum to one. As the energy
+        is half the compliance there, this is where the compliance comes from: a joint twice as stiff takes off half
+        its share, about. Raises PrsError when the machine can move without straining anything.
+        """
+        from ..modes.energy import strain_shares
+        from ..response.points import point
+        from ..response.static import static_motion
+
+        return strain_shares(self, static_motion(self, point(self, at)))
+
     def state_space(
         self,
         modes: int = 20,

@@ -10,6 +10,7 @@ import pytest
 
 import prs_model as prs
 from prs_model.report.sources import entries
+from tests.response.two_masses import row
 
 
 def table(path: Path) -> list[list[str]]:
@@ -95,3 +96,15 @@ def test_wrong_input_makes_no_page(poses: list[dict[str, float]], damping: float
     with pytest.raises(prs.PrsError, match=words):
         prs.write_report(prs.load_machine("hexapod"), tmp_path / "new", poses, damping=damping)
     assert not list(tmp_path.rglob("*.html"))
+
+
+def test_a_machine_that_floats_has_a_report(tmp_path: Path) -> None:
+    """Its rigid-body modes have no damping ratio, which JSON cannot say as a number."""
+    pytest.importorskip("matplotlib")
+    (tmp_path / "row").mkdir()
+    machine = row(tmp_path / "row", "rayleigh: {alpha: 2.0, beta: 1.0e-4}", ground=False)
+    prs.write_report(machine, tmp_path / "report")
+    results = json.loads((tmp_path / "report" / "results.json").read_text(encoding="utf-8"))
+    ratios = results["poses"][0]["damping_ratios"]
+    assert ratios[:3] == [None] * 3
+    assert 0.0 < ratios[3] < 1.0

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import prs_model as prs
-from tests.response.two_masses import K1, K2, matrices, row
+from prs_model.response.damping import damping_of, modal_ratios
+from tests.response.two_masses import K1, K2, M1, M2, matrices, row
 
 JOINTS = "joints: {wall: {viscous: 2.0e-3}, spring: {viscous: 1.0e-3, loss_factor: 0.04}}"
 
@@ -20,7 +21,20 @@ def test_modal_ratios_are_those_of_the_modes(tmp_path: Path) -> None:
 def test_further_modes_have_the_last_ratio(tmp_path: Path) -> None:
     system = row(tmp_path, "modal: [0.03]").assemble()
     assert system.complex_modes(2).damping_ratios == pytest.approx([0.03, 0.03])
-    assert system.complex_modes(2, [0.01, 0.02]).damping_ratios == pytest.approx([0.01, 0.02])
+    for given in ([0.01, 0.02], np.array([0.01, 0.02]), {"modal": [0.01, 0.02]}, {"modal": np.array([0.01, 0.02])}):
+        assert system.complex_modes(2, given).damping_ratios == pytest.approx([0.01, 0.02])
+
+
+def test_rigid_body_modes_have_no_ratio(tmp_path: Path) -> None:
+    """A free row of points: three rigid-body modes, exactly at zero, and one that has the first ratio of a list."""
+    modes = row(tmp_path, ground=False).modes(7)
+    assert modes.eigenvalues[:3].tolist() == [0.0, 0.0, 0.0]
+    assert modes.eigenvalues[3] == pytest.approx(K2 * (1.0 / M1 + 1.0 / M2))
+    for given in ([0.02, 0.05], {"rayleigh": {"alpha": 0.0, "beta": 0.04 / np.sqrt(modes.eigenvalues[3])}}):
+        ratios = modal_ratios(damping_of(modes.system, given), modes.eigenvalues)
+        assert np.isnan(ratios[:3]).all()
+        assert ratios[3] == pytest.approx(0.02)
+        assert modes.system.complex_modes(1, given).damping_ratios == pytest.approx([0.02])
 
 
 def test_joints_damp_by_their_own_stiffness(tmp_path: Path) -> None:
@@ -59,6 +73,9 @@ def test_an_instance_may_damp_otherwise_than_its_kind() -> None:
         ([], "at least 1"),
         (float("nan"), "found nan"),
         ("much", "expected a ratio such as 0.025"),
+        ([0.01, [0.02]], r"found \[0.01, \[0.02\]\], expected a ratio such as 0.025"),
+        (0.01j, "found 0.01j, expected a ratio"),
+        ({"modal": [0.01, 3]}, r"^damping.modal\[1\]: found 3, expected a ratio below 1, such as 0.025$"),
         ({"modal": 0.1, "rayleigh": {"alpha": 1.0, "beta": 0.0}}, "keep one"),
         ({"joints": {"sprin": {"viscous": 1e-4}}}, "unknown joint in damping 'sprin'; known: wall, spring"),
         ({"joints": {"spring": {"viscous": -1e-4}}}, "damping.joints.spring.viscous: found -0.0001"),

@@ -25,6 +25,11 @@ def test_csv_comes_back(response: FrequencyResponse, tmp_path: Path) -> None:
     assert table[:, 3] + 1j * table[:, 4] == pytest.approx(response.curve("rw/v"), rel=1e-11)
 
 
+def test_one_pair_may_be_named_alone(response: FrequencyResponse, tmp_path: Path) -> None:
+    response.save(tmp_path / "h.csv", "u/v")
+    assert (tmp_path / "h.csv").read_text().splitlines()[0] == "frequency [Hz],re u/v [m/N],im u/v [m/N]"
+
+
 def test_universal_file_comes_back(response: FrequencyResponse, tmp_path: Path) -> None:
     pyuff = pytest.importorskip("pyuff")
     response.save(tmp_path / "h.uff")
@@ -54,6 +59,8 @@ def test_pictures_are_drawn_whole(response: FrequencyResponse, tmp_path: Path) -
         ("h.xls", None, "found a name ending in '.xls', expected one of .csv, .uff, .png"),
         ("no/h.csv", None, "cannot be written"),
         ("h.csv", ("x",), "unknown direction 'x'; known: u, v, w, ru, rv, rw"),
+        ("h.csv", (1,), "direction: found 1, expected one such as 'u'"),
+        *((f"h.{kind}", (), "pairs: found none, expected one at least") for kind in ("csv", "uff", "svg")),
     ],
 )
 def test_what_cannot_be_written_is_told(

@@ -55,7 +55,7 @@ def test_all_modes_are_the_direct_solution(system: System, damping: object) -> N
         assert difference(found, expected) < 1e-10
 
 
-@pytest.mark.parametrize("damping", [0.025, JOINTS], ids=["modal", "joints"])
+@pytest.mark.parametrize("damping", [0.025, RAYLEIGH, JOINTS], ids=["modal", "Rayleigh", "joints"])
 def test_truncation_with_static_correction(tmp_path: Path, damping: object) -> None:
     """Within 1 % up to the last kept mode, at every frequency; without the correction far off even at rest."""
     system = gantry(tmp_path).replace({"reduction.modes": 15}).assemble()
@@ -141,7 +141,9 @@ def test_without_damping_a_resonance_is_told(tmp_path: Path) -> None:
     [
         ({"frequencies_hz": [0.0, 10.0]}, "found 0 Hz, expected a list of numbers above zero"),
         ({"frequencies_hz": -5.0}, "found -5 Hz"),
-        ({"frequencies_hz": [float("nan")]}, "found nan Hz"),
+        ({"frequencies_hz": [float("nan")]}, "frequencies: found nan, expected a list of numbers above zero"),
+        ({"frequencies_hz": [10.0, 1e160]}, r"found 1e\+160 Hz, expected a list of numbers .* to 1e\+09"),
+        ({"frequencies_hz": [10.0 + 1.0j]}, r"found \[\(10\+1j\)\], expected a list of numbers"),
         ({"frequencies_hz": []}, r"found an array of shape \(0,\)"),
         ({"frequencies_hz": "fast"}, "found 'fast'"),
         ({"to": "one.and"}, "unknown node of one 'and'; known: end"),

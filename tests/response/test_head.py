@@ -28,6 +28,17 @@ def test_eight_modes_with_static_correction(system: System) -> None:
     assert difference(modes.frf(frequencies[:1], 0.025, static_correction=False), exact[:1]) > 0.3
 
 
+@pytest.mark.parametrize("each", [{"loss_factor": 0.1}, {"viscous": 1e-4}], ids=["loss", "viscous"])
+def test_eight_modes_where_all_joints_damp(system: System, each: dict[str, float]) -> None:
+    """What dampers do to the modes left out is not small; all modes are the check."""
+    damping = {"joints": {system.stems[spring.joint]: each for spring in system.springs}}
+    modes = system.modes(8)
+    frequencies = np.linspace(5.0, modes.frequencies[-1], 60)
+    exact = system.modes(system.size).frf(frequencies, damping)
+    assert difference(modes.frf(frequencies, damping), exact) < 1e-8
+    assert difference(modes.frf(frequencies, damping, static_correction=False), exact) > 0.05
+
+
 def test_an_impulse_simulated_by_python_control_has_the_frf_as_its_spectrum(system: System) -> None:
     control = pytest.importorskip("control")
     modes = system.modes(8)

@@ -86,8 +86,12 @@ def test_a_loss_factor_has_no_model_in_time(tmp_path: Path) -> None:
         (np.zeros((5, 2)), 1e-3, "linear", r"found an array of shape \(5, 2\)"),
         (np.zeros(5), 1e-3, "linear", r"found an array of shape \(5,\)"),
         ([["a", "b", "c"]], 1e-3, "linear", "forces: found"),
-        (np.full((5, 3), np.nan), 1e-3, "linear", "not finite"),
+        (np.full((5, 3), np.nan), 1e-3, "linear", "forces: found nan"),
+        (np.full((5, 3), 1j), 1e-3, "linear", "forces: found array"),
         (np.zeros((5, 3)), 0.0, "linear", "step: found 0.0"),
+        (np.zeros((5, 3)), None, "linear", "step: found None, expected a time between samples above zero"),
+        (np.zeros((5, 3)), "a", "linear", "step: found 'a'"),
+        (np.zeros((5, 3)), 1e300, "linear", "found 1e[+]300 s, too long for a system this fast"),
         (np.zeros((5, 3)), 1e-3, "cubic", "unknown hold 'cubic'; known: linear, constant"),
     ],
 )
