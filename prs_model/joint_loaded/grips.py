@@ -53,7 +53,7 @@ def _grip(springs: Sequence[Spring], side: int, ends: Ends) -> Grip:
     grounded = beyond == "ground"
     end_motions = _motions(springs, end, ends)
     placement = ends.placements[_body(end)]
-    twists = [spring.law.wrenches.T @ (spring.placement.inverse() * placement).toActionMatrix() for spring in springs]
+    twists = [spring.law.wrenches.T @ spring.placement.actInv(placement).toActionMatrix() for spring in springs]
     return Grip(
         end=end_motions,
         beyond=np.vstack(twists),

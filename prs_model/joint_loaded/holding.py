@@ -9,7 +9,7 @@ from ..description import MachineDescription
 from ..joints import ElasticJoint
 from ..kinematics import Configuration
 from ..reduction import SuperElement, TravellingElement
-from ..synthesis.assembly import ends_of
+from ..synthesis.assembly import elements_at, ends_of
 from .grips import grips
 from .held import Held
 
@@ -39,5 +39,6 @@ class Holding:
         return [self._held(name, place, {**self.parts, name: element}) for place, element in pairs]
 
     def _held(self, name: str, where: Configuration, parts: Mapping[str, Part]) -> Held:
-        ends = ends_of(self.description, parts, where)
-        return Held(ends.elements[name], grips(name, self.joints, ends, where, self.reference))
+        elements = elements_at(parts, where)
+        ends = ends_of(self.description, elements, where)
+        return Held(elements[name], grips(name, self.joints, ends, where, self.reference))

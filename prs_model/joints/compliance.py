@@ -8,14 +8,15 @@ changes W alone.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.linalg import block_diag, null_space, orth
+from numpy.typing import ArrayLike
 
-from ..arrays import FloatArray
+from ..arrays import BoolArray, FloatArray
+from ..errors import PrsError
 
 _RANK_TOLERANCE = 1e-10
 _ROUND_OFF = 1e-14
@@ -23,51 +24,60 @@ _ROUND_OFF = 1e-14
 
 @dataclass(frozen=True, eq=False)
 class JointCompliance:
-    """Constraint-wrench basis W (6, m) [N, N m per unit] and compliance C (m, m) on it [m/N, rad/(N m)]."""
+    """Constraint-wrench basis W (6, m) [N, N m per unit] and compliance C (m, m) on it [m/N, rad/(N m)].
+
+    Either may be a stack (N, ...) for as many configurations, whose joints have equally many free and rigid directions.
+    """
 
     wrenches: FloatArray
     compliance: FloatArray
 
     def moved(self, action: FloatArray) -> JointCompliance:
         """The joint seen from another frame; `action` (6, 6) takes displacements there (X in eq. 11-14)."""
-        return JointCompliance(np.asarray(np.linalg.solve(action.T, self.wrenches)), self.compliance)
+        return JointCompliance(_moved_wrenches(action, self.wrenches), self.compliance)
 
     def scaled(self, factor: float) -> JointCompliance:
         """The joint with `factor` times the stiffness; what is rigid or free stays so."""
         return JointCompliance(self.wrenches, self.compliance / factor)
 
-    @property
+    @cached_property
     def free_twists(self) -> FloatArray:
         """Basis (6, 6 - m) of the relative displacements that meet no resistance."""
-        return _null_space(self.wrenches.T)
+        return null_space(_transposed(self.wrenches))
+
+    @cached_property
+    def reciprocal(self) -> FloatArray:
+        """W^+ (m, 6), which takes a transmitted wrench to its components."""
+        return np.asarray(np.linalg.pinv(self.wrenches))
 
     @cached_property
     def stiffness(self) -> FloatArray:
         """K = W C^+ W^T (6, 6): the elastic directions, zero along free and rigid ones."""
         inverse, _ = self._halves
-        return self.wrenches @ inverse @ self.wrenches.T
+        return np.asarray(self.wrenches @ inverse @ _transposed(self.wrenches))
 
     @cached_property
     def rigid_wrenches(self) -> FloatArray:
         """Wrenches (6, r) whose directions are rigid: rigid_wrenches^T d = 0."""
         _, rigid = self._halves
-        return self.wrenches @ rigid
+        return np.asarray(self.wrenches @ rigid)
 
     @cached_property
     def _halves(self) -> tuple[FloatArray, FloatArray]:
         return elastic_and_rigid(self.compliance)
 
 
-def along_axes(compliances: dict[int, float]) -> JointCompliance:
-    """A joint with one compliance per coordinate axis 0..5; axes left out are free, zero is rigid."""
+def along_axes(compliances: Mapping[int, ArrayLike]) -> JointCompliance:
+    """A joint with one compliance, () or (N,), per coordinate axis 0..5; axes left out are free, zero is rigid."""
     axes = sorted(compliances)
-    return JointCompliance(np.eye(6)[:, axes], np.diag([compliances[axis] for axis in axes]))
+    values = np.stack(np.broadcast_arrays(*(compliances[axis] for axis in axes)), axis=-1) if axes else np.zeros(0)
+    return JointCompliance(np.eye(6)[:, axes], values[..., None] * np.eye(len(axes)))
 
 
 def from_stiffness_matrix(stiffness: FloatArray) -> JointCompliance:
     """A joint from a symmetric positive semi-definite K (6, 6); the null space of K is free."""
     scale = _unit_scale(stiffness)
-    wrenches = orth(stiffness * np.outer(scale, scale), rcond=_RANK_TOLERANCE) / scale[:, None]
+    wrenches = column_space(stiffness * np.outer(scale, scale)) / scale[:, None]
     reciprocal = np.linalg.pinv(wrenches)
     return JointCompliance(wrenches, np.linalg.inv(reciprocal @ stiffness @ reciprocal.T))
 
@@ -79,27 +89,28 @@ def parallel(joints: Sequence[JointCompliance]) -> JointCompliance:
     """
     if len(joints) == 1:
         return joints[0]
-    basis = np.hstack([joint.wrenches for joint in joints])
-    compliance = block_diag(*[joint.compliance for joint in joints])
-    wrenches = orth(basis, rcond=_RANK_TOLERANCE)
+    basis = np.concatenate([joint.wrenches for joint in joints], axis=-1)
+    compliance = _block_diagonal([joint.compliance for joint in joints])
+    wrenches = column_space(basis)
     share = np.linalg.pinv(basis) @ wrenches
-    internal = _null_space(basis)
-    inverse, _ = elastic_and_rigid(internal.T @ compliance @ internal)
-    share = share - internal @ (inverse @ (internal.T @ compliance @ share))
-    return JointCompliance(wrenches, share.T @ compliance @ share)
+    internal = null_space(basis)
+    inverse, _ = elastic_and_rigid(_transposed(internal) @ compliance @ internal)
+    share = share - internal @ (inverse @ (_transposed(internal) @ compliance @ share))
+    return JointCompliance(wrenches, np.asarray(_transposed(share) @ compliance @ share))
 
 
-def series(joints: Sequence[JointCompliance]) -> JointCompliance:
-    """Joints one after the other, in one frame: compliances add on the wrenches that all of them transmit.
+def series(joints: Sequence[JointCompliance], actions: Sequence[FloatArray]) -> JointCompliance:
+    """Joints one after the other: compliances add on the wrenches that all of them transmit.
 
+    Each joint is given in its own frame, with the action (6, 6) that takes its displacements to the common frame.
     The sound form of eq. (12) and (14): K = W (W^T C W)^-1 W^T with W = null(F^T), F all free twists.
     """
-    if len(joints) == 1:
-        return joints[0]
-    free = np.hstack([joint.free_twists for joint in joints])
-    wrenches = _null_space(free.T) if free.shape[1] else np.eye(6)
-    shares = [np.linalg.pinv(joint.wrenches) @ wrenches for joint in joints]
-    compliance = sum(share.T @ joint.compliance @ share for share, joint in zip(shares, joints, strict=True))
+    free = [action @ joint.free_twists for joint, action in zip(joints, actions, strict=True)]
+    wrenches = null_space(_transposed(_side_by_side(free)))
+    shares = [
+        joint.reciprocal @ (_transposed(action) @ wrenches) for joint, action in zip(joints, actions, strict=True)
+    ]
+    compliance = sum(_transposed(share) @ joint.compliance @ share for share, joint in zip(shares, joints, strict=True))
     return JointCompliance(wrenches, np.asarray(compliance))
 
 
@@ -111,30 +122,78 @@ def series_as_printed(joints: Sequence[JointCompliance], actions: Sequence[Float
     """
     total = np.zeros((6, 6))
     for joint, action in zip(joints, actions, strict=True):
-        reciprocal = np.linalg.pinv(joint.wrenches)
-        total += action @ reciprocal.T @ joint.compliance @ reciprocal @ action.T
+        arrived = action @ _transposed(joint.reciprocal)
+        total = total + arrived @ joint.compliance @ _transposed(arrived)
     return JointCompliance(np.eye(6), total)
 
 
 def elastic_and_rigid(compliance: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Generalised inverse of a positive semi-definite C (m, m), and a basis (m, r) of its null space.
+    """Generalised inverse of a positive semi-definite C (m, m), and a basis (m, r) of its null space; or of a stack.
 
     The rank is decided on C scaled to a unit diagonal, so that metres and radians do not matter; a diagonal
-    entry that is round-off beside the largest one is zero.
+    entry that is round-off beside the largest one is zero. Raises PrsError when it differs within a stack.
     """
     scale = _unit_scale(compliance)
-    values, vectors = np.linalg.eigh(compliance * np.outer(scale, scale))
-    stiff = values <= _RANK_TOLERANCE * max(1.0, values.max(initial=0.0))
-    elastic = vectors[:, ~stiff] * scale[:, None]
-    inverse = elastic @ np.diag(1.0 / values[~stiff]) @ elastic.T
-    return inverse, vectors[:, stiff] * scale[:, None]
+    values, vectors = np.linalg.eigh(compliance * scale[..., :, None] * scale[..., None, :])
+    largest = values.max(axis=-1, initial=0.0, keepdims=True)
+    count = _rank(values > _RANK_TOLERANCE * np.maximum(1.0, largest))
+    vectors = vectors * scale[..., :, None]
+    rigid, elastic = np.split(vectors, [values.shape[-1] - count], axis=-1)
+    inverse = (elastic / values[..., None, values.shape[-1] - count :]) @ _transposed(elastic)
+    return np.asarray(inverse), rigid
+
+
+def null_space(matrix: FloatArray) -> FloatArray:
+    """Orthonormal basis (n, n - rank) of the null space of a matrix (m, n), or of a stack of them."""
+    _, values, right = np.linalg.svd(matrix)
+    return np.asarray(_transposed(right[..., _rank(_present(values)) :, :]))
+
+
+def column_space(matrix: FloatArray) -> FloatArray:
+    """Orthonormal basis (m, rank) of the columns of a matrix (m, n), or of a stack of them."""
+    left, values, _ = np.linalg.svd(matrix, full_matrices=False)
+    return np.asarray(left[..., : _rank(_present(values))])
+
+
+def _present(singular: FloatArray) -> BoolArray:
+    return np.asarray(singular > _RANK_TOLERANCE * singular.max(axis=-1, initial=0.0, keepdims=True))
+
+
+def _rank(present: BoolArray) -> int:
+    """How many directions are present, which must be as many in all of a stack."""
+    counts = present.sum(axis=-1)
+    if np.ptp(counts) > 0:
+        raise PrsError(
+            f"a joint leaves different numbers of directions free or rigid ({counts.min()} and {counts.max()}) at "
+            "poses that are assembled together; assemble them one by one"
+        )
+    return int(counts.max())
 
 
 def _unit_scale(matrix: FloatArray) -> FloatArray:
-    diagonal = np.diag(matrix)
-    present = diagonal > _ROUND_OFF * diagonal.max(initial=0.0)
-    return 1.0 / np.sqrt(np.where(present, diagonal, 1.0))
+    diagonal = np.diagonal(matrix, axis1=-2, axis2=-1)
+    present = diagonal > _ROUND_OFF * diagonal.max(axis=-1, initial=0.0, keepdims=True)
+    return np.asarray(1.0 / np.sqrt(np.where(present, diagonal, 1.0)))
 
 
-def _null_space(matrix: FloatArray) -> FloatArray:
-    return np.asarray(null_space(matrix, rcond=_RANK_TOLERANCE))
+def _moved_wrenches(action: FloatArray, wrenches: FloatArray) -> FloatArray:
+    """X^-T W: forces move as angular displacements do, moments as linear ones."""
+    return np.asarray(np.roll(action @ np.roll(wrenches, 3, axis=-2), 3, axis=-2))
+
+
+def _side_by_side(matrices: Sequence[FloatArray]) -> FloatArray:
+    shape = np.broadcast_shapes(*(matrix.shape[:-2] for matrix in matrices))
+    return np.concatenate([np.broadcast_to(matrix, shape + matrix.shape[-2:]) for matrix in matrices], axis=-1)
+
+
+def _block_diagonal(matrices: Sequence[FloatArray]) -> FloatArray:
+    stops = np.cumsum([matrix.shape[-1] for matrix in matrices])
+    whole = np.zeros((*np.broadcast_shapes(*(matrix.shape[:-2] for matrix in matrices)), stops[-1], stops[-1]))
+    for matrix, stop in zip(matrices, stops, strict=True):
+        own = slice(stop - matrix.shape[-1], stop)
+        whole[..., own, own] = matrix
+    return whole
+
+
+def _transposed(matrix: FloatArray) -> FloatArray:
+    return np.swapaxes(matrix, -1, -2)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pinocchio as pin
+from numpy.typing import ArrayLike
 
 from ..arrays import FloatArray
 from ..description import MachineDescription
@@ -20,6 +21,7 @@ from ..description.schema import (
     Stage,
 )
 from ..description.urdf import Urdf
+from ..kinematics import Placements
 from .compliance import (
     JointCompliance,
     along_axes,
@@ -30,12 +32,12 @@ from .compliance import (
 )
 from .drive import drive_compliance
 
-Placement = Callable[[str], pin.SE3]
+Placement = Callable[[str], pin.SE3 | Placements]
 
 
 @dataclass(frozen=True, eq=False)
 class Spring:
-    """What holds end B to end A of a joint at one point.
+    """What holds end B to end A of a joint at one point, in one configuration or in many.
 
     `placement` is the spring's frame in the world; `interface` names the one of the joint's interfaces it stands
     for, None for the joint as a whole.
@@ -44,7 +46,7 @@ class Spring:
     joint: str
     interface: str | None
     between: tuple[str, str]
-    placement: pin.SE3
+    placement: pin.SE3 | Placements
     law: JointCompliance
 
 
@@ -71,8 +73,8 @@ class ElasticStage:
     free: int | None
     factor: float = 1.0
 
-    def at(self, values: Mapping[str, float]) -> tuple[Side, ...]:
-        """All its sides, the drive's among them, when the URDF joints stand at `values` [m, rad]."""
+    def at(self, values: Mapping[str, ArrayLike]) -> tuple[Side, ...]:
+        """All its sides, the drive's among them, when the URDF joints stand at `values`, () or (N,) [m, rad]."""
         if self.drive is None or self.driven is None or self.free is None:
             return self.sides
         law = along_axes({self.free: drive_compliance(self.drive, values[self.driven])})
@@ -83,7 +85,7 @@ class ElasticStage:
         sides = tuple(replace(side, law=side.law.scaled(factor)) for side in self.sides)
         return replace(self, sides=sides, factor=self.factor * factor)
 
-    def lumped(self, values: Mapping[str, float]) -> JointCompliance:
+    def lumped(self, values: Mapping[str, ArrayLike]) -> JointCompliance:
         """All its sides gathered at the origin of its frame (eq. 11, 12)."""
         return parallel([side.law.moved(_action(side.place)) for side in self.at(values)])
 
@@ -107,8 +109,8 @@ class ElasticJoint:
         """The joint with `factor` times the stiffness, its drives' included; what is rigid or free stays so."""
         return replace(self, stages=tuple(stage.scaled(factor) for stage in self.stages))
 
-    def springs(self, values: Mapping[str, float], placement: Placement) -> list[Spring]:
-        """The springs in one configuration (eq. 9-14).
+    def springs(self, values: Mapping[str, ArrayLike], placement: Placement) -> list[Spring]:
+        """The springs in one configuration, or in many at once (eq. 9-14).
 
         Interfaces of a single stage each stay at their own place; so does the drive. Stages in series are gathered
         in the frame of the first one.
@@ -121,14 +123,11 @@ class ElasticJoint:
             Spring(self.name, side.interface, self.between, frame * side.place, side.law) for side in stage.at(values)
         ]
 
-    def _chain(self, values: Mapping[str, float], placement: Placement) -> Spring:
+    def _chain(self, values: Mapping[str, ArrayLike], placement: Placement) -> Spring:
         frames = [placement(stage.frame) for stage in self.stages]
         laws = [stage.lumped(values) for stage in self.stages]
-        actions = [_action(frames[0].inverse() * frame) for frame in frames]
-        if self.as_printed:
-            law = series_as_printed(laws, actions)
-        else:
-            law = series([stage.moved(action) for stage, action in zip(laws, actions, strict=True)])
+        actions = [_action(frames[0].actInv(frame)) for frame in frames]
+        law = series_as_printed(laws, actions) if self.as_printed else series(laws, actions)
         return Spring(self.name, None, self.between, frames[0], law)
 
 
@@ -186,5 +185,5 @@ def _place(at: tuple[float, float, float] | None) -> pin.SE3:
     return pin.SE3.Identity() if at is None else pin.SE3(np.eye(3), np.array(at, dtype=float))
 
 
-def _action(placement: pin.SE3) -> FloatArray:
+def _action(placement: pin.SE3 | Placements) -> FloatArray:
     return np.asarray(placement.toActionMatrix())

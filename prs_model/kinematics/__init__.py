@@ -2,5 +2,6 @@
 
 from .configuration import Configuration, Configurations
 from .kinematics import Kinematics
+from .placements import Placements
 
-__all__ = ["Configuration", "Configurations", "Kinematics"]
+__all__ = ["Configuration", "Configurations", "Kinematics", "Placements"]

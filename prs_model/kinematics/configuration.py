@@ -11,6 +11,7 @@ import pinocchio as pin
 
 from ..arrays import BoolArray, FloatArray
 from ..errors import UnreachablePoseError
+from .placements import Placements
 from .tree import Frames, Tree
 
 
@@ -81,6 +82,17 @@ class Configurations:
     def reasons(self) -> tuple[str, ...]:
         """Why a pose is not reachable, empty where it is (N,)."""
         return tuple(str(self.errors.get(i, "")) for i in range(len(self)))
+
+    @property
+    def joint_values(self) -> Mapping[str, FloatArray]:
+        """Values (N,) of every URDF joint that moves [m, rad]."""
+        return dict(zip(self.tree.names, self.q.T, strict=True))
+
+    def placement(self, frame: str) -> Placements:
+        """Placements of a URDF link, seen from the root link [m]. Raises UnknownNameError."""
+        link = self.tree.link(frame)
+        rotation, translation = self.tree.link_frame(self._frames, frame)
+        return Placements(rotation, translation, link.carrier, pin.SE3(link.rotation, link.offset))
 
     def placements(self, frame: str) -> FloatArray:
         """Placements (N, 4, 4) of a URDF link, seen from the root link [m]. Raises UnknownNameError."""

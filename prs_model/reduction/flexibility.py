@@ -26,22 +26,25 @@ def flexibility_form(stiffness: FloatArray, contact: IntArray) -> FloatArray:
 
 
 def force_coordinates(form: FloatArray, contact: IntArray) -> FloatArray:
-    """B (n, n) with u = B v, where v has the contact's forces g in place of its motions U_c = C U_r + F g."""
-    change = np.eye(len(form))
-    change[contact] = form[contact]
+    """B (n, n) with u = B v, where v has the contact's forces g in place of its motions U_c = C U_r + F g.
+
+    Of a stack of forms (..., n, n), too.
+    """
+    change = np.zeros_like(form) + np.eye(form.shape[-1])
+    change[..., contact, :] = form[..., contact, :]
     return change
 
 
 def force_stiffness(form: FloatArray, rest: FloatArray, contact: IntArray) -> FloatArray:
     """The stiffness in v, diag(K, F): the flexibility of `form` at the contact, `rest` (n, n) elsewhere, uncoupled."""
-    is_contact = np.isin(np.arange(len(form)), contact)
+    is_contact = np.isin(np.arange(form.shape[-1]), contact)
     both = np.logical_and.outer(is_contact, is_contact)
     neither = np.logical_and.outer(~is_contact, ~is_contact)
     return np.where(both, form, np.where(neither, rest, 0.0))
 
 
 def positive_mean(matrices: FloatArray) -> Callable[[FloatArray], FloatArray]:
-    """A function of weights (s,) that sum to one: exp(sum_k w_k log A_k) of positive definite matrices (s, n, n).
+    """A function of weights (..., s) that sum to one: exp(sum_k w_k log A_k) of positive definite matrices (s, n, n).
 
     Positive definite even where weights are negative, and the same for A as for its inverse.
     """
@@ -52,12 +55,12 @@ def positive_mean(matrices: FloatArray) -> Callable[[FloatArray], FloatArray]:
 
     def mean(weights: FloatArray) -> FloatArray:
         values, vectors = np.linalg.eigh(np.tensordot(weights, logarithms, 1))
-        return np.asarray(scale * ((vectors * np.exp(values)) @ vectors.T))
+        return np.asarray(scale * ((vectors * np.exp(values)[..., None, :]) @ vectors.swapaxes(-1, -2)))
 
     return mean
 
 
 def congruent(matrix: FloatArray, change: FloatArray) -> FloatArray:
-    """B^T A B, exactly symmetric."""
-    product = change.T @ matrix @ change
-    return np.asarray((product + product.T) / 2.0)
+    """B^T A B, exactly symmetric; of stacks too."""
+    product = change.swapaxes(-1, -2) @ matrix @ change
+    return np.asarray((product + product.swapaxes(-1, -2)) / 2.0)

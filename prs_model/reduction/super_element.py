@@ -89,6 +89,11 @@ class SuperElement:
     def _rigid_body_modes(self) -> FloatArray:
         return read_only(rigid_body_modes(self.motions, self.positions))
 
+    @cached_property
+    def motions_of_origin(self) -> FloatArray:
+        """(k, 6, n): the motions of the nodes carried to the body origin, as if each were rigidly tied to it."""
+        return read_only(transfer(-self.positions) @ self.motions)
+
     def rigid_body_modes(self) -> FloatArray:
         """(n, 6): the coordinates when the part moves rigidly by unit translations and rotations of its origin.
 

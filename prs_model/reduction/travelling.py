@@ -17,12 +17,13 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import BSpline, make_interp_spline
 
 from ..arrays import FloatArray, IntArray
 from ..errors import PrsError
 from ..finite_elements.rigid_motion import transfer
+from .elements import Elements
 from .flexibility import congruent, flexibility_form, force_coordinates, force_stiffness, positive_mean
 from .gate import Check, GateReport, passed
 from .super_element import SuperElement, read_only
@@ -101,16 +102,33 @@ class TravellingElement:
             provenance={**self.elements[0].provenance, "modes": "interpolated"},
         )
 
-    def weights(self, value: float) -> FloatArray:
-        """(s,) weights of the stations at a joint value; they sum to one. Raises PrsError outside the stations."""
+    def at_many(self, values: ArrayLike) -> Elements:
+        """The same at joint values (N,), all at once. Raises PrsError when one is outside the stations."""
+        weights = self.weights(values)
+        stiffness, mass, change = self._matrices(weights)
+        return Elements(
+            mass=congruent(mass, change),
+            stiffness=congruent(stiffness, change),
+            nodes=self.nodes,
+            positions=np.tensordot(weights, self._positions, 1),
+            motions_of_origin=np.tensordot(weights, self._motions_of_origin, 1),
+            name=self.name,
+        )
+
+    def weights(self, values: ArrayLike) -> FloatArray:
+        """Weights (s,) or (N, s) of the stations at one or N joint values; their sum is one.
+
+        Raises PrsError outside the stations.
+        """
         low, high = self.stations[0], self.stations[-1]
-        slack = 1e-9 * (high - low)
-        if not low - slack <= value <= high + slack:
+        asked, slack = np.asarray(values, dtype=float), 1e-9 * (high - low)
+        outside = ~((low - slack <= asked) & (asked <= high + slack))
+        if outside.any():
             raise PrsError(
                 f"{self.name}: its contact travels with joint {self.joint} from {low:g} to {high:g}, asked for "
-                f"{value:g}; add stations to 'travel' or stay inside"
+                f"{asked[outside][0]:g}; add stations to 'travel' or stay inside"
             )
-        return np.asarray(self._cardinal(value))
+        return np.asarray(self._cardinal(asked))
 
     def check(self) -> tuple[GateReport, ...]:
         """Pass the physics gate at every station and midway between them, with one mass. Raises PhysicsError."""
@@ -147,7 +165,7 @@ class TravellingElement:
 
     @cached_property
     def _motions_of_origin(self) -> FloatArray:
-        return np.array([transfer(-each.positions) @ each.motions for each in self.elements])
+        return np.array([each.motions_of_origin for each in self.elements])
 
     @cached_property
     def _contact(self) -> IntArray:
@@ -187,12 +205,13 @@ class TravellingElement:
         return positive_mean(self._forms[:, self._contact[:, None], self._contact])
 
     def _matrices(self, weights: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Stiffness and mass in force coordinates, and what leads from physical coordinates to these."""
-        stiffness, mass = np.einsum("i,xiab->xab", weights, self._force_matrices)
+        """Stiffness and mass in force coordinates, and what leads from physical coordinates to these; or stacks."""
+        stiffness, mass = (np.tensordot(weights, matrices, 1) for matrices in self._force_matrices)
         if self.products is not None:
-            mass = np.einsum("i,j,ijab->ab", weights, weights, self._force_products, optimize=True)
+            pairs = weights[..., :, None] * weights[..., None, :]
+            mass = np.tensordot(pairs, self._force_products, 2)
         form = np.tensordot(weights, self._forms, 1)
-        form[np.ix_(self._contact, self._contact)] = self._flexibility(weights)
+        form[..., self._contact[:, None], self._contact] = self._flexibility(weights)
         change = np.asarray(np.linalg.inv(force_coordinates(form, self._contact)), dtype=float)
         return force_stiffness(form, stiffness, self._contact), mass, change
 

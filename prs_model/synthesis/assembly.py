@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import TypeAlias
 
 import numpy as np
 
@@ -11,11 +12,13 @@ from ..description import MachineDescription
 from ..description.limbs import limbs_of
 from ..errors import PrsError
 from ..joints import ElasticJoint, Spring
-from ..kinematics import Configuration
-from ..reduction import SuperElement, TravellingElement
+from ..kinematics import Configuration, Configurations
+from ..reduction import Elements, SuperElement, TravellingElement
 from .elimination import independent_coordinates
 from .ends import Ends
 from .system import Coordinate, SpringMotion, System
+
+Bodies: TypeAlias = Mapping[str, SuperElement] | Mapping[str, Elements]
 
 
 def assemble(
@@ -30,23 +33,21 @@ def assemble(
     Rigid joint directions are eliminated exactly; coordinates with neither stiffness nor mass are left out.
     Raises PrsError when the joints leave no coordinate free.
     """
-    ends = ends_of(description, parts, configuration)
-    springs = [
-        spring for joint in joints for spring in joint.springs(configuration.joint_values, configuration.placement)
-    ]
-    mass, stiffness = _block_diagonal(ends.elements, ends.blocks)
-    motions, constraints, sizes = _joined(springs, ends, stiffness)
+    elements = elements_at(parts, configuration)
+    ends = ends_of(description, elements, configuration)
+    mass, stiffness = block_diagonal(elements, ends.blocks)
+    motions, constraints, sizes = joined(springs_of(joints, configuration), ends, stiffness)
     mass, stiffness, expansion, kept = _independent(mass, stiffness, constraints, sizes)
     output = description.file.output
     place, rows, reading = ends.output(output, configuration.placement(output.frame))
-    labels = _labels(ends.elements)
+    labels = _labels(elements)
     return System(
         mass=mass,
         stiffness=stiffness,
         index=tuple(labels[row] for row in kept),
         expansion=expansion,
         blocks=ends.blocks,
-        elements=ends.elements,
+        elements=elements,
         springs=motions,
         output=reading @ expansion[rows],
         output_body=output.node.split(".", 1)[0],
@@ -67,37 +68,46 @@ def wide_joints(
     share: float = 0.01,
 ) -> dict[str, float]:
     """Joints whose two ends lie further apart [m] than `share` of the machine's size, which is seldom meant."""
-    ends = ends_of(description, parts, configuration)
-    points = np.vstack([ends.placements[name].act(r) for name, e in ends.elements.items() for r in e.positions])
+    elements = elements_at(parts, configuration)
+    ends = ends_of(description, elements, configuration)
+    points = np.vstack([ends.placements[name].act(r) for name, e in elements.items() for r in e.positions])
     size = float(np.max(np.ptp(points.reshape(-1, 3), axis=0)))
     springs = {joint.name: joint.springs(configuration.joint_values, configuration.placement) for joint in joints}
     gaps = {name: ends.gap(each) for name, each in springs.items() if each}
     return {name: gap for name, gap in gaps.items() if gap > share * size}
 
 
+def elements_at(
+    parts: Mapping[str, SuperElement | TravellingElement], configuration: Configuration
+) -> dict[str, SuperElement]:
+    """Every part where its contacts are in a configuration."""
+    values = configuration.joint_values
+    return {
+        name: part.at(values[part.joint]) if isinstance(part, TravellingElement) else part
+        for name, part in parts.items()
+    }
+
+
 def ends_of(
     description: MachineDescription,
-    parts: Mapping[str, SuperElement | TravellingElement],
-    configuration: Configuration,
+    elements: Bodies,
+    configuration: Configuration | Configurations,
 ) -> Ends:
-    """The bodies in a configuration, for reading the motions of joint ends."""
-    elements = {name: _at(part, configuration) for name, part in parts.items()}
+    """The bodies in a configuration, or in many, for reading the motions of joint ends."""
     placements = {name: configuration.placement(body.frame) for name, body in description.bodies.items()}
     return Ends(elements, _blocks(elements), placements)
 
 
-def _at(part: SuperElement | TravellingElement, configuration: Configuration) -> SuperElement:
-    if isinstance(part, TravellingElement):
-        return part.at(configuration.joint_values[part.joint])
-    return part
+def springs_of(joints: Sequence[ElasticJoint], configuration: Configuration | Configurations) -> list[Spring]:
+    """The springs of all joints in a configuration, or in many."""
+    values = configuration.joint_values
+    return [spring for joint in joints for spring in joint.springs(values, configuration.placement)]
 
 
-def _blocks(elements: Mapping[str, SuperElement]) -> dict[str, slice]:
-    stops = np.cumsum([element.size for element in elements.values()])
-    return {
-        name: slice(int(stop) - element.size, int(stop))
-        for (name, element), stop in zip(elements.items(), stops, strict=True)
-    }
+def _blocks(elements: Bodies) -> dict[str, slice]:
+    sizes = [element.mass.shape[-1] for element in elements.values()]
+    stops = np.cumsum(sizes).tolist()
+    return {name: slice(stop - size, stop) for name, size, stop in zip(elements, sizes, stops, strict=True)}
 
 
 def _labels(elements: Mapping[str, SuperElement]) -> list[Coordinate]:
@@ -108,30 +118,38 @@ def _labels(elements: Mapping[str, SuperElement]) -> list[Coordinate]:
     ]
 
 
-def _block_diagonal(elements: Mapping[str, SuperElement], blocks: Mapping[str, slice]) -> tuple[FloatArray, FloatArray]:
-    size = sum(element.size for element in elements.values())
-    mass, stiffness = np.zeros((size, size)), np.zeros((size, size))
+def block_diagonal(
+    elements: Bodies, blocks: Mapping[str, slice], many: tuple[int, ...] = ()
+) -> tuple[FloatArray, FloatArray]:
+    """M and K (N, N) of the bodies apart from each other; or a stack of as `many`."""
+    size = max(block.stop for block in blocks.values())
+    mass, stiffness = np.zeros((*many, size, size)), np.zeros((*many, size, size))
     for name, block in blocks.items():
-        mass[block, block] = elements[name].mass
-        stiffness[block, block] = elements[name].stiffness
+        mass[..., block, block] = elements[name].mass
+        stiffness[..., block, block] = elements[name].stiffness
     return mass, stiffness
 
 
-def _joined(
+def joined(
     springs: Sequence[Spring], ends: Ends, stiffness: FloatArray
 ) -> tuple[tuple[SpringMotion, ...], FloatArray, FloatArray]:
-    """Adds the springs to the stiffness (N, N); returns their motions, the rigid rows G (r, N) and the rows' sizes."""
-    motions, constraints, sizes = [], [np.zeros((0, len(stiffness)))], [np.zeros(0)]
+    """Adds the springs to the stiffness (N, N), or to a stack.
+
+    Returns their motions, the rigid rows G (r, N) and what these were before terms cancelled, their sizes (r,).
+    """
+    *many, _, size = stiffness.shape
+    motions, constraints, sizes = [], [np.zeros((*many, 0, size))], [np.zeros((*many, 0))]
     for spring in springs:
-        relative, rigid = ends.relative_displacement(spring), spring.law.rigid_wrenches
-        motions.append(
-            SpringMotion(spring.joint, spring.interface, relative.rows, relative.motion, spring.law.stiffness)
-        )
-        stiffness[np.ix_(relative.rows, relative.rows)] += relative.motion.T @ spring.law.stiffness @ relative.motion
-        constraints.append(np.zeros((rigid.shape[1], len(stiffness))))
-        constraints[-1][:, relative.rows] = rigid.T @ relative.motion
-        sizes.append(np.linalg.norm(np.abs(rigid).T @ relative.size, axis=1))
-    return tuple(motions), np.vstack(constraints), np.concatenate(sizes)
+        law, relative = spring.law, ends.relative_displacement(spring)
+        rows, motion = relative.rows, relative.motion
+        motions.append(SpringMotion(spring.joint, spring.interface, rows, motion, law.stiffness))
+        stiffness[..., rows[:, None], rows] += _transposed(motion) @ law.stiffness @ motion
+        rigid = _transposed(law.rigid_wrenches)
+        constraints.append(np.zeros((*many, rigid.shape[-2], size)))
+        constraints[-1][..., rows] = rigid @ motion
+        sizes.append(np.zeros((*many, rigid.shape[-2])))
+        sizes[-1][:] = np.linalg.norm(np.abs(rigid) @ relative.size, axis=-1)
+    return tuple(motions), np.concatenate(constraints, axis=-2), np.concatenate(sizes, axis=-1)
 
 
 def _independent(
@@ -146,6 +164,10 @@ def _independent(
         raise PrsError("every coordinate of the machine is held rigidly; nothing can vibrate")
     both = np.ix_(present, present)
     return mass[both], stiffness[both], expansion[:, present], kept[present]
+
+
+def _transposed(matrix: FloatArray) -> FloatArray:
+    return np.swapaxes(matrix, -1, -2)
 
 
 def _projected(matrix: FloatArray, expansion: FloatArray) -> FloatArray:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 import pinocchio as pin
@@ -12,7 +13,10 @@ from ..arrays import FloatArray, IntArray
 from ..description.schema import Output
 from ..errors import UnknownNameError
 from ..joints import Spring
-from ..reduction import SuperElement
+from ..kinematics import Placements
+from ..reduction import Elements, SuperElement
+
+Placement: TypeAlias = pin.SE3 | Placements
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,21 +33,28 @@ class RelativeDisplacement:
 
 @dataclass(frozen=True, eq=False)
 class Ends:
-    """The bodies of a machine in one configuration: elements, rows among all coordinates, placements in the world."""
+    """The bodies of a machine in one configuration: elements, rows among all coordinates, placements in the world.
 
-    elements: Mapping[str, SuperElement]
+    Or in N at once, with stacks for elements and placements; the motions are then (N, 6, k), or (1, 6, k) where they
+    are the same in all.
+    """
+
+    elements: Mapping[str, SuperElement] | Mapping[str, Elements]
     blocks: Mapping[str, slice]
-    placements: Mapping[str, pin.SE3]
+    placements: Mapping[str, Placement]
 
     def relative_displacement(self, spring: Spring) -> RelativeDisplacement:
         """What the spring feels; both ends may be on one body, one may be the ground."""
         signed = [(end, sign) for end, sign in zip(spring.between, (-1.0, 1.0), strict=True) if end != "ground"]
         motions = [(sign, *self.motion(end, spring.interface, spring.placement)) for end, sign in signed]
-        rows, place = np.unique(np.concatenate([rows for _, rows, _ in motions]), return_inverse=True)
-        motion, size = np.zeros((len(rows), 6)), np.zeros((len(rows), 6))
-        np.add.at(motion, place, np.hstack([sign * each for sign, _, each in motions]).T)
-        np.add.at(size, place, np.abs(np.hstack([each for _, _, each in motions])).T)
-        return RelativeDisplacement(rows, motion.T, size.T)
+        rows = np.unique(np.concatenate([rows for _, rows, _ in motions]))
+        many = np.broadcast_shapes(*(motion.shape[:-2] for *_, motion in motions))
+        relative, size = np.zeros((*many, 6, len(rows))), np.zeros((*many, 6, len(rows)))
+        for sign, own, motion in motions:
+            place = np.searchsorted(rows, own)
+            relative[..., place] += sign * motion
+            size[..., place] += np.abs(motion)
+        return RelativeDisplacement(rows, relative, size)
 
     def gap(self, springs: Sequence[Spring]) -> float:
         """Distance [m] between the nodes at which the ends of a joint's springs are read; the ground's is their place.
@@ -66,21 +77,21 @@ class Ends:
         """Where the node stands at which an end is read (3,) [m], in the world."""
         body = end.split(".", 1)[0]
         element = self.elements[body]
-        middle = np.mean([element.positions[k] for k in self.nodes(end, interface)], axis=0)
+        middle = np.mean([element.positions[..., k, :] for k in self.nodes(end, interface)], axis=0)
         return np.asarray(self.placements[body].act(middle))
 
-    def output(self, output: Output, frame: pin.SE3) -> tuple[pin.SE3, IntArray, FloatArray]:
+    def output(self, output: Output, frame: Placement) -> tuple[Placement, IntArray, FloatArray]:
         """Where the end-reference point stands, with the axes of the output frame; rows (k,) and its motion (6, k)."""
-        place = pin.SE3(frame.rotation, self.position(output.node))
+        place = type(frame)(frame.rotation, self.position(output.node))
         return place, *self.motion(output.node, None, place)
 
-    def motion(self, end: str, interface: str | None, place: pin.SE3) -> tuple[IntArray, FloatArray]:
+    def motion(self, end: str, interface: str | None, place: Placement) -> tuple[IntArray, FloatArray]:
         """Coordinates (k,) of an end's body, and the end's motion (6, k) on them as seen at `place`, in its axes."""
         body = end.split(".", 1)[0]
         element, block = self.elements[body], self.blocks[body]
         nodes = self.nodes(end, interface)
-        to_place = place.inverse() * self.placements[body]
-        motion = sum(_seen_from(to_place, element, k) for k in nodes) / len(nodes)
+        of_origin = sum(element.motions_of_origin[..., k, :, :] for k in nodes) / len(nodes)
+        motion = place.actInv(self.placements[body]).toActionMatrix() @ of_origin
         return np.arange(block.start, block.stop), np.asarray(motion)
 
     def nodes(self, end: str, interface: str | None) -> Sequence[int]:
@@ -97,8 +108,3 @@ class Ends:
         if not found:
             raise UnknownNameError(f"node of {self.elements[body].name}", node, names)
         return found
-
-
-def _seen_from(to_place: pin.SE3, element: SuperElement, k: int) -> FloatArray:
-    node = to_place * pin.SE3(np.eye(3), element.positions[k])
-    return np.asarray(node.toActionMatrix() @ element.motions[k])

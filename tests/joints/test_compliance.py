@@ -64,8 +64,8 @@ def test_a_rigid_interface_rules_an_elastic_one_beside_it() -> None:
 def test_three_bearings_in_series_make_a_translational_spring() -> None:
     """The sound spherical joint: rank 3, no resistance to any rotation about its centre."""
     turns = [np.eye(3), pin.exp3(np.array([np.pi / 2, 0, 0])), pin.exp3(np.array([0, np.pi / 2, 0]))]
-    stages = [along_axes(BEARING).moved(np.asarray(pin.SE3(turn, np.zeros(3)).toActionMatrix())) for turn in turns]
-    stiffness = series(stages).stiffness
+    actions = [np.asarray(pin.SE3(turn, np.zeros(3)).toActionMatrix()) for turn in turns]
+    stiffness = series([along_axes(BEARING)] * 3, actions).stiffness
     assert np.linalg.matrix_rank(stiffness, tol=1e-6 * abs(stiffness).max()) == 3
     np.testing.assert_allclose(stiffness[3:], 0.0, atol=1e-6)
     compliance = sum(turn @ np.diag([1e-9, 1.2e-9, 2e-9]) @ turn.T for turn in turns)
@@ -84,7 +84,7 @@ def test_the_printed_spherical_joint_resists_rotation() -> None:
 
 def test_series_of_two_springs_halves_the_stiffness() -> None:
     matrix = from_stiffness_matrix(stiffness_of(dict.fromkeys(range(6), 1e-8)))
-    np.testing.assert_allclose(series([matrix, matrix]).stiffness, 0.5e8 * np.eye(6), atol=1e-3)
+    np.testing.assert_allclose(series([matrix, matrix], [np.eye(6)] * 2).stiffness, 0.5e8 * np.eye(6), atol=1e-3)
 
 
 def test_stiffness_matrix_keeps_its_null_space_free() -> None:

@@ -1,0 +1,100 @@
+"""Substructure synthesis in many configurations at once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..description import MachineDescription
+from ..description.limbs import limbs_of
+from ..joints import ElasticJoint
+from ..kinematics import Configurations
+from ..reduction import Elements, SuperElement, TravellingElement
+from .assembly import block_diagonal, ends_of, joined, springs_of
+from .system import SpringMotion
+
+
+@dataclass(frozen=True, eq=False)
+class Systems:
+    """M u'' + K u = f with G u = 0 in N configurations, on all n body coordinates: rows as `blocks`, body axes, SI.
+
+    mass, stiffness (N, n, n). constraints (N, r, n): the rigid directions G; rows may be redundant, and one whose norm
+    is round-off beside its `constraint_sizes` (N, r) constrains nothing. output (N, 6, n) reads the end-reference
+    point, a node of `output_body`, in the axes of the output frame; it stands at `output_placement` (N, 4, 4).
+    springs: displacements (N, 6, k) and stiffnesses (N, 6, 6). elements: matrices (N, ..), or (1, ..) where they are
+    the same in all. `stems` names the kind of each body and joint, `limbs` the limb of those that are in one.
+    """
+
+    mass: FloatArray
+    stiffness: FloatArray
+    constraints: FloatArray
+    constraint_sizes: FloatArray
+    output: FloatArray
+    springs: tuple[SpringMotion, ...]
+    elements: Mapping[str, Elements]
+    blocks: Mapping[str, slice]
+    output_body: str
+    output_placement: FloatArray
+    stems: Mapping[str, str]
+    limbs: Mapping[str, str]
+
+    def __len__(self) -> int:
+        return len(self.mass)
+
+
+def assemble_many(
+    description: MachineDescription,
+    parts: Mapping[str, SuperElement | TravellingElement],
+    joints: Sequence[ElasticJoint],
+    configurations: Configurations,
+) -> Systems:
+    """The systems of a machine in N configurations, as `assemble` makes them before rigid directions are eliminated.
+
+    Memory: two matrices (n, n) for each configuration, and about as much again for the springs' motions.
+    Raises UnreachablePoseError of the first pose that is not reachable, and PrsError where joints change their number
+    of rigid or free directions from one configuration to another.
+    """
+    for error in configurations.errors.values():
+        raise error
+    count = len(configurations)
+    elements = _elements(parts, configurations)
+    ends = ends_of(description, elements, configurations)
+    mass, stiffness = block_diagonal(elements, ends.blocks, (count,))
+    motions, constraints, sizes = joined(springs_of(joints, configurations), ends, stiffness)
+    place, rows, reading = ends.output(description.file.output, configurations.placement(description.file.output.frame))
+    output = np.zeros((count, 6, mass.shape[-1]))
+    output[..., rows] = reading
+    return Systems(
+        mass=mass,
+        stiffness=stiffness,
+        constraints=constraints,
+        constraint_sizes=sizes,
+        output=output,
+        springs=tuple(_stacked(motion, count) for motion in motions),
+        elements=elements,
+        blocks=ends.blocks,
+        output_body=description.file.output.node.split(".", 1)[0],
+        output_placement=np.broadcast_to(place.homogeneous, (count, 4, 4)),
+        stems=description.stems,
+        limbs=limbs_of(description),
+    )
+
+
+def _elements(
+    parts: Mapping[str, SuperElement | TravellingElement], configurations: Configurations
+) -> dict[str, Elements]:
+    values = configurations.joint_values
+    return {
+        name: part.at_many(values[part.joint]) if isinstance(part, TravellingElement) else Elements.of(part)
+        for name, part in parts.items()
+    }
+
+
+def _stacked(motion: SpringMotion, count: int) -> SpringMotion:
+    """With an entry for every configuration, also where all are the same."""
+    displacement = np.broadcast_to(motion.displacement, (count, *motion.displacement.shape[-2:]))
+    stiffness = np.broadcast_to(motion.stiffness, (count, 6, 6))
+    return SpringMotion(motion.joint, motion.interface, motion.rows, displacement, stiffness)
