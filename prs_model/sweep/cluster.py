@@ -42,7 +42,7 @@ def evaluate(
     Raises what the evaluation of a pose raises, and PrsError for a cluster that cannot be reached, has no workers for a
     minute, went away, or whose workers die over one chunk as often as it allows.
     """
-    with _client(cluster) as client, _on_workers(client, plan) as name:
+    with _client(cluster) as client, client.as_current(), _on_workers(client, plan) as name:
         waiting = iter(chunks.items())
         under_way: dict[Future[Any], int] = {}
         try:
@@ -64,11 +64,10 @@ class _PlanOnWorker(WorkerPlugin):
         self.plan = plan
 
 
-def _evaluated(name: str, start: int, stop: int) -> Block:
-    """Runs on a worker."""
-    plugin = get_worker().plugins[name]
-    assert isinstance(plugin, _PlanOnWorker)
-    return plugin.plan.evaluate(start, stop)
+def _evaluated(name: str, start: int, stop: int) -> Block | None:
+    """Runs on a worker. None where the plan has been taken away, when a sweep was given up."""
+    plugin = get_worker().plugins.get(name)
+    return plugin.plan.evaluate(start, stop) if isinstance(plugin, _PlanOnWorker) else None
 
 
 @contextmanager
@@ -127,8 +126,10 @@ def _completed(client: Client, futures: list[Future[Any]]) -> set[Future[Any]]:
 
 def _result(future: Future[Any]) -> Block:
     try:
-        block: Block = future.result()
-        return block
+        block: Block | None = future.result()
     except distributed.KilledWorker as error:
         died = f"{error.allowed_failures + 1} workers died over one piece, the last {error.last_worker.address}"
         raise PrsError(f"cluster: {died}; they need more memory, or their logs say why") from error
+    if block is None:
+        raise PrsError("cluster: a worker has no plan of the sweep; run again")
+    return block

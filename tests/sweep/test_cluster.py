@@ -1,0 +1,119 @@
+"""Pieces on several worker processes: the same results, whoever dies on the way."""
+
+import os
+import signal
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from prs_model.errors import PrsError
+from prs_model.sweep import cluster as clusters
+from prs_model.sweep.store import Block, opened
+from tests.sweep.stand_in import RUN, SHAPE, StandIn, evaluated, results
+from tests.sweep.test_store import assert_same
+
+dask = pytest.importorskip("dask")
+distributed = pytest.importorskip("distributed")
+
+SIZE = SHAPE[0] * SHAPE[1]
+
+
+@pytest.fixture(scope="module")
+def client() -> Iterator[distributed.Client]:
+    """A cluster of three worker processes on this computer."""
+    with (
+        dask.config.set({"distributed.scheduler.allowed-failures": 1}),
+        distributed.LocalCluster(n_workers=3, threads_per_worker=1, dashboard_address=":0") as cluster,
+        distributed.Client(cluster, set_as_default=False) as client,
+    ):
+        yield client
+
+
+def test_a_worker_killed_during_the_run_changes_nothing(client: distributed.Client, tmp_path: Path) -> None:
+    plan = StandIn(tmp_path / "journal", seconds=0.02)
+    victim = next(iter(client.run(os.getpid).values()))
+    workers = set(client.nthreads())
+    before: list[tuple[int, int]] = []
+    with opened(tmp_path / "run", RUN, SHAPE) as store:
+        for count, (index, block) in enumerate(clusters.evaluate(client, plan, store.unfinished())):
+            assert store.chunks[index] not in before
+            store.write(index, block)
+            before.append(store.chunks[index])
+            if count == 10:
+                os.kill(victim, signal.SIGKILL)
+        assert_same(store.gather(), results(0, SIZE))
+        assert sorted(before) == list(store.chunks.values())
+    assert victim not in client.run(os.getpid).values()
+    again = [span for span in set(evaluated(plan.journal)) if evaluated(plan.journal).count(span) > 1]
+    assert len(again) <= 10  # what the one that died had done, or had begun, and not handed over
+    assert workers - set(client.nthreads())
+
+
+def test_a_run_begun_here_is_completed_there(client: distributed.Client, tmp_path: Path) -> None:
+    plan = StandIn(tmp_path / "journal")
+    with opened(tmp_path / "run", RUN, SHAPE) as store:
+        for index in (3, 17):
+            store.write(index, plan.evaluate(*store.chunks[index]))
+        plan.journal.unlink()
+        for index, block in clusters.evaluate(client.scheduler.address, plan, store.unfinished()):
+            store.write(index, block)
+        assert_same(store.gather(), results(0, SIZE))
+        assert len(evaluated(plan.journal)) == len(store.chunks) - 2
+
+
+@dataclass(frozen=True)
+class Failing:
+    """Fails in the way asked for."""
+
+    how: str
+
+    def evaluate(self, start: int, stop: int) -> Block:
+        if self.how == "killed":
+            os.kill(os.getpid(), signal.SIGKILL)
+        raise PrsError(f"poses {start} to {stop}: they cannot be had")
+
+
+def test_what_a_pose_raises_arrives_and_the_cluster_is_clean(client: distributed.Client, tmp_path: Path) -> None:
+    with pytest.raises(PrsError, match="they cannot be had"):
+        list(clusters.evaluate(client, Failing("raises"), {0: (0, 10), 1: (10, 20)}))
+    plugins = client.run(lambda dask_worker: list(dask_worker.plugins))
+    assert not any("sweep" in name for names in plugins.values() for name in names)
+
+
+def test_a_piece_that_kills_every_worker_is_told(client: distributed.Client) -> None:
+    with pytest.raises(PrsError, match=r"workers died over one piece.*more memory"):
+        list(clusters.evaluate(client, Failing("killed"), {0: (0, 10)}))
+    plan_works = dict(clusters.evaluate(client, StandIn(Path(os.devnull)), {0: (0, 10)}))
+    assert_same(plan_works[0], results(0, 10))
+
+
+def test_what_is_no_cluster_is_told() -> None:
+    plan = StandIn(Path(os.devnull))
+    with pytest.raises(PrsError, match=r"cluster: found 7, expected .*tcp://host:8786"):
+        list(clusters.evaluate(7, plan, {0: (0, 1)}))
+    soon = dask.config.set({"distributed.comm.timeouts.connect": "0.3s"})
+    with soon, pytest.raises(PrsError, match=r"no scheduler of Dask answers at 'tcp://127\.0\.0\.1:9'"):
+        list(clusters.evaluate("tcp://127.0.0.1:9", plan, {0: (0, 1)}))
+
+
+def test_a_cluster_without_workers_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(clusters, "PATIENCE", 0.2)
+    plan = StandIn(Path(os.devnull))
+    with (
+        distributed.LocalCluster(n_workers=0, dashboard_address=":0") as cluster,
+        pytest.raises(PrsError, match=r"it had no workers for 0\.2 s"),
+    ):
+        list(clusters.evaluate(cluster, plan, {0: (0, 1)}))
+
+
+def test_memory_does_not_grow_with_the_number_of_pieces(client: distributed.Client, tmp_path: Path) -> None:
+    plan = StandIn(tmp_path / "journal")
+    ahead = 0
+    chunks = {index: (index, index + 1) for index in range(60)}
+    for count, (index, block) in enumerate(clusters.evaluate(client, plan, chunks)):
+        np.testing.assert_array_equal(block["frequency"], results(index, index + 1)["frequency"])
+        ahead = max(ahead, len(evaluated(plan.journal)) - count)
+    assert ahead <= 20 < len(chunks)
