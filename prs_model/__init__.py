@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from .kinematics.tasks import Task
     from .machine import Machine, load_machine
     from .modes import Modes
-    from .modes.mac import mac
+    from .modes.mac import mac, pair_modes
     from .plugins import PartRequest, Reducer, list_machines, list_reducers
     from .reduction import SuperElement, TravellingElement, export, read_part, reduce
     from .report import write_report
@@ -54,6 +54,7 @@ _LAZY = {
     "list_reducers": "plugins",
     "load_machine": "machine",
     "mac": "modes.mac",
+    "pair_modes": "modes.mac",
     "read_part": "reduction",
     "reduce": "reduction",
     "verify": "verification",
@@ -89,6 +90,7 @@ __all__ = [
     "list_reducers",
     "load_machine",
     "mac",
+    "pair_modes",
     "read_part",
     "reduce",
     "verify",

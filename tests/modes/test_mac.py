@@ -1,10 +1,12 @@
 """Likeness of mode shapes: close modes may be turned and change places, and are still known."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
 import prs_model as prs
-from prs_model.modes.mac import clusters, mac_of, pairing, subspace_mac
+from prs_model.modes.mac import clusters, in_common, mac_of, observe, pairing, subspace_mac
 from tests.verification.gantry import gantry
 
 RNG = np.random.default_rng(4)
@@ -39,6 +41,66 @@ def test_mac_of_a_machine_is_that_of_its_points():
 def test_models_of_different_machines_are_not_compared(tmp_path):
     with pytest.raises(prs.PrsError, match="no surface points and no nodes in common"):
         prs.mac(prs.load_machine("hexapod").modes(2), gantry(tmp_path).modes(2))
+
+
+def test_a_model_without_surfaces_is_compared_at_its_nodes(caplog):
+    """The head against one whose platform has no surface, and one rod neither that nor the names of its nodes."""
+    head = prs.load_machine("head_3prs").modes(4)
+    elements = dict(head.system.elements)
+    for body in ("platform", "rod_1"):
+        elements[body] = dataclasses.replace(elements[body], surface=None)
+    elements["rod_1"] = dataclasses.replace(
+        elements["rod_1"], nodes=tuple(f"other {node}" for node in elements["rod_1"].nodes)
+    )
+    bare = dataclasses.replace(head, system=dataclasses.replace(head.system, elements=elements))
+    assert np.diag(prs.mac(head, bare)) == pytest.approx(np.ones(4))
+    assert "compared without rod_1: no points or nodes in common" in caplog.text
+    shapes = [body["platform"].surface for body in (observe(head), observe(bare))]
+    assert (len(shapes[0]) > 1000, len(shapes[1])) == (True, 0)
+    assert len(in_common(*({"platform": observe(each)["platform"]} for each in (head, bare)))[0]) % 3 == 0
+
+
+def test_as_many_points_are_not_the_same_points():
+    """Points moved by a tenth of the body: nodes are compared instead."""
+    head = prs.load_machine("head_3prs").modes(2)
+    platform = head.system.elements["platform"]
+    moved = dataclasses.replace(platform.surface, points=platform.surface.points + 0.1)
+    other = dataclasses.replace(
+        head,
+        system=dataclasses.replace(head.system, elements={"platform": dataclasses.replace(platform, surface=moved)}),
+    )
+    mine = {"platform": observe(head)["platform"]}
+    assert len(in_common(mine, mine)[0]) == platform.surface.points.size
+    assert len(in_common(mine, observe(other))[0]) == 3 * len(platform.nodes)
+
+
+def test_complex_modes_are_compared_as_real_ones():
+    system = prs.load_machine("head_3prs").assemble()
+    real, damped = system.modes(6), system.complex_modes(6, {"joints": {"R": {"loss_factor": 0.2}}})
+    pairs = prs.pair_modes(damped, real)
+    assert pairs.partners.tolist() == [0, 1, 2, 3, 4, 5]
+    assert np.diag(pairs.mac) == pytest.approx(np.ones(6), abs=0.05)
+    assert np.diag(prs.mac(damped, damped)) == pytest.approx(np.ones(6))
+    assert prs.mac(damped, real) == pytest.approx(prs.mac(real, damped).T)
+
+
+def test_pairs_of_a_machine_and_a_changed_one():
+    """Pairs of equal frequency may turn at will: each alone is unlike, as pairs they are the same."""
+    machine = prs.load_machine("hexapod")
+    modes, moved = machine.modes(6), machine.replace({"joints.P_2.stiffness_factor": 1.0 + 1e-4}).modes(6)
+    assert np.diag(prs.mac(modes, moved)).min() < 0.9
+    pairs = prs.pair_modes(modes, moved)
+    assert pairs.partners.tolist() == [0, 1, 2, 3, 4, 5]
+    assert pairs.clusters.tolist() == [0, 0, 1, 2, 2, 3]
+    assert np.diag(pairs.mac) == pytest.approx(np.ones(6), abs=1e-6)
+    with pytest.raises(prs.PrsError, match="found 6 modes to pair with 3, expected as many at least"):
+        prs.pair_modes(modes, machine.modes(3))
+
+
+@pytest.mark.parametrize("wrong", [None, 3, np.eye(3)])
+def test_what_is_no_modes_is_told(wrong):
+    with pytest.raises(prs.PrsError, match="expected modes, such as"):
+        prs.mac(prs.load_machine("hexapod").modes(2), wrong)
 
 
 @pytest.mark.parametrize("angle", [0.3, np.pi / 4, 1.2, np.pi / 2])
