@@ -121,7 +121,9 @@ def _identities(machine: Machine, poses: Poses, request: Request, block: Block) 
 
     where = f"modes are numbered as at {place}; 0 where none could be followed"
     return {
-        "identity": array(found.identity, "mode", {"mode": numbers}, long_name="whose frequency it is", comment=where),
+        "identity": array(
+            found.identity, "mode", {"mode": numbers}, long_name="whose frequency it is", units="1", comment=where
+        ),
         "tracked_frequency": array(
             found.frequency, "tracked", tracked, long_name="natural frequency of one mode, followed", units="Hz"
         ),
