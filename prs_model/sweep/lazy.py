@@ -12,8 +12,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
-def lazy(store: Store) -> dict[str, dask.array.Array]:
-    """The results of all pieces as arrays of Dask, one chunk each piece.
+def lazy(store: Store) -> dict[str, NDArray[Any] | dask.array.Array]:
+    """The results of all pieces as arrays of Dask, one chunk each piece; those with one number per pose in memory.
 
     A dataset of them is written to NetCDF or Zarr chunk by chunk. Raises PrsError for a first piece that is missing or
     damaged; of others that is said when they are read.
@@ -33,7 +33,9 @@ def lazy(store: Store) -> dict[str, dask.array.Array]:
         whole: da.Array = da.concatenate(parts)
         return whole
 
-    return {name: array(name, values) for name, values in store.read(0).items()}
+    first = store.read(0)
+    single = [name for name, values in first.items() if values.ndim == 1]
+    return {name: array(name, values) for name, values in first.items()} | store.gather(*single)
 
 
 def _read(store: Store, index: int, name: str) -> NDArray[Any]:

@@ -101,12 +101,12 @@ class Store:
         except PrsError as error:
             raise PrsError(f"{error}; {_REMEDY}") from error
 
-    def gather(self) -> Block:
-        """All results in memory. Raises PrsError for a piece that is missing or damaged."""
-        first = self.read(0)
+    def gather(self, *names: str) -> Block:
+        """All results in memory, or those of some names. Raises PrsError for a piece that is missing or damaged."""
+        first = self.read(0, *names)
         block = {name: np.empty((self.size, *values.shape[1:]), values.dtype) for name, values in first.items()}
         for index, (start, stop) in self.chunks.items():
-            for name, values in self.read(index).items():
+            for name, values in self.read(index, *names).items():
                 block[name][start:stop] = values
         return block
 
@@ -173,9 +173,9 @@ def opened(folder: str | Path, run: str, shape: tuple[int, ...]) -> Iterator[Sto
 
 def piece_length(shape: tuple[int, ...]) -> int:
     """Poses in a piece: whole rows of a grid where they are short enough."""
-    size, row = prod(shape), shape[-1]
+    size, row = prod(shape), next((length for length in reversed(shape) if length > 1), 1)
     length = max(1, min(MOST, size // PIECES))
-    return length // row * row if len(shape) > 1 and row <= length else length
+    return length // row * row or length
 
 
 def _check_own(folder: Path) -> None:
