@@ -42,14 +42,17 @@ def check_file(path: Path) -> None:
     check_writable(path)
 
 
-def save(data: xarray.Dataset, path: Path) -> None:
-    """Write a sweep's dataset as the name's ending says, in place of what is there. Raises PrsError as check_file."""
+def save(data: xarray.Dataset, path: Path, drawn: str = "frequency") -> None:
+    """Write a sweep's dataset as the name's ending says, in place of what is there; `drawn` is what a picture shows.
+
+    Raises PrsError as check_file.
+    """
     check_file(path)
     suffix = path.suffix.lower()
     if suffix in PICTURES:
         from .picture import draw
 
-        draw(data, path)
+        draw(data, path, drawn)
         return
     with told(path):
         {".nc": _write_netcdf, ".zarr": _write_zarr, ".csv": _write_csv}[suffix](data, path)

@@ -1,4 +1,4 @@
-"""Maps drawn: one panel a mode, the lowest pose marked, unreachable poses hatched.
+"""Maps drawn: one panel a mode or direction, the worst pose marked, unreachable poses hatched.
 
 Two coordinates that vary make a filled contour map, polar where one is a full turn and the other a radius from zero on;
 one makes curves; more make the map of the first two at the middle of the others. A list of poses becomes points.
@@ -6,9 +6,11 @@ one makes curves; more make the map of the first two at the middle of the others
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from math import ceil
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,12 +18,24 @@ from numpy.typing import NDArray
 
 from ..arrays import FloatArray
 from ..description.units import Dimension
-from ..errors import MissingExtraError, PrsError
+from ..errors import MissingExtraError, PrsError, UnknownNameError
 from ..modes.figure_file import write_figure
 from ..readable import readable
 
 if TYPE_CHECKING:
     import xarray
+
+DRAWABLE: Mapping[str, str] = MappingProxyType(
+    {
+        "frequency": "frequency",
+        "tracked_frequency": "identity",
+        "identity": "identity",
+        "static_compliance": "static_compliance",
+        "frf_peak": "frf_peak",
+        "frf_peak_frequency": "frf_peak",
+    }
+)
+"""What can be drawn, and the quantity it comes with."""
 
 _COLOURS = "cividis"  # the same to the colour-blind
 _LEVELS = 12
@@ -49,32 +63,62 @@ class _Axis:
         return bool(self.values[0] >= 0.0 and self.values[0] <= 0.1 * np.ptp(self.values))
 
 
-def draw(data: xarray.Dataset, path: Path, quantity: str = "frequency") -> None:
-    """Draw a quantity of a sweep's dataset, one panel for each mode, into a PNG, SVG or PDF file.
+@dataclass(frozen=True, eq=False)
+class _Panel:
+    """One map: values over the poses, their unit, and which end is the worst: -1 the lowest, 1 the largest, 0 none."""
 
-    quantity: any that has one value a mode, such as ``frequency`` or ``tracked_frequency``. The file appears only when
-    it is complete. Raises PrsError or MissingExtraError.
+    title: str
+    values: FloatArray
+    unit: str
+    worst: int
+
+    def worst_place(self) -> tuple[int, ...]:
+        flat = np.nanargmin(-self.worst * self.values)
+        return tuple(int(k) for k in np.unravel_index(flat, self.values.shape))
+
+    def value_text(self) -> str:
+        return f"{self.values[self.worst_place()]:.4g} {self.unit}"
+
+    def transposed(self) -> _Panel:
+        return replace(self, values=self.values.T)
+
+    def closed(self) -> _Panel:
+        """With the first column once more at the end."""
+        return replace(self, values=np.column_stack([self.values, self.values[:, :1]]))
+
+
+def draw(data: xarray.Dataset, path: Path, quantity: str = "frequency") -> None:
+    """Draw a quantity of a sweep's dataset, a panel for each mode or direction, into a PNG, SVG or PDF file.
+
+    quantity: of DRAWABLE. The worst pose, of the lowest frequency or the largest compliance, is marked. The file
+    appears only when it is complete. Raises PrsError or MissingExtraError.
     """
     figure_class = matplotlib_figure()
-    if quantity not in data or data[quantity].ndim != data["reason"].ndim + 1:
-        raise PrsError(f"picture: found no quantity '{quantity}' with a value for each mode; expected frequency")
+    _check(data, quantity)
     dims = tuple(map(str, data["reason"].dims))
-    if not dims:
-        raise PrsError("picture: found one pose, expected several; prs-model modes --picture draws the shapes at one")
-    note = ""
-    if dims != ("pose",) and len(dims) > 2:
+    if len(dims) > 2:
         middle = {name: data.sizes[name] // 2 for name in dims[2:]}
         data = data.isel(middle)
-        dims, note = dims[:2], ", ".join(_value(data[name]) for name in middle)
-    values = data[quantity].transpose(*dims, ...)
-    count = values.shape[-1]
-    columns = min(count, 3)
-    figure = figure_class(figsize=(4.6 * columns, 3.9 * ceil(count / columns) + 0.6), layout="constrained")
-    panel = _panel_for(data, dims)
-    for k in range(count):
-        panel(figure, (ceil(count / columns), columns, k + 1), data, np.asarray(values[..., k]), _title(values, k))
-    figure.suptitle("\n".join(filter(None, [str(data.attrs.get("title", "")), _fixed(data, dims), note])), fontsize=11)
+        dims = dims[:2]
+    panels = _panels(data, quantity)
+    columns = min(len(panels), 3)
+    rows = ceil(len(panels) / columns)
+    figure = figure_class(figsize=(4.6 * columns, 3.9 * rows + 0.6), layout="constrained")
+    kind = _kind(data, dims)
+    for k, panel in enumerate(panels):
+        projection = "polar" if kind is _polar else None
+        axes = figure.add_subplot(rows, columns, k + 1, projection=projection)
+        kind(figure, axes, data, panel)
+        axes.set_title(panel.title + _worst_in_words(data, panel), fontsize=9)
+    figure.suptitle("\n".join(filter(None, [str(data.attrs.get("title", "")), _fixed(data)])), fontsize=11)
     write_figure(figure, path)
+
+
+def check_drawing(quantity: str) -> None:
+    """Raise UnknownNameError, MissingExtraError or PrsError now if it could not be drawn later."""
+    if quantity not in DRAWABLE:
+        raise UnknownNameError("quantity to draw", quantity, list(DRAWABLE))
+    matplotlib_figure()
 
 
 def matplotlib_figure() -> Any:
@@ -88,69 +132,93 @@ def matplotlib_figure() -> Any:
     return Figure
 
 
-def _panel_for(data: xarray.Dataset, dims: tuple[str, ...]) -> Any:
+def _check(data: xarray.Dataset, quantity: str) -> None:
+    check_drawing(quantity)
+    if quantity not in data:
+        raise PrsError(f"picture: the map has no {quantity}; ask for the quantity {DRAWABLE[quantity]}")
+    if not data["reason"].dims:
+        raise PrsError("picture: found one pose, expected several; prs-model modes --picture draws the shapes at one")
+    if not np.isfinite(data[quantity].values).any():
+        raise PrsError(f"picture: no pose has a value of {quantity}: all are unreachable, or the machine is not held")
+
+
+def _panels(data: xarray.Dataset, quantity: str) -> list[_Panel]:
+    """One for each mode; of a compliance, for each direction."""
+    variable = data[quantity].transpose(*data["reason"].dims, ...)
+    values = np.asarray(variable.values, dtype=float)
+    if quantity == "static_compliance":
+        units = np.diag(data["static_compliance_unit"].values)
+        names = [f"compliance {name}" for name in data["response"].values]
+        return [_Panel(name, values[..., k, k], str(units[k]), 1) for k, name in enumerate(names)]
+    last = str(variable.dims[-1])
+    word, unit = "along" if last == "axis" else "mode", str(variable.attrs.get("units", "1"))
+    characters = variable.coords.get("character")
+    worst = 0 if quantity == "identity" else 1 if quantity == "frf_peak" else -1
+    return [
+        _Panel(
+            f"{word} {name}" + ("" if characters is None else f": {characters.values[k]}"), values[..., k], unit, worst
+        )
+        for k, name in enumerate(data[last].values)
+    ]
+
+
+def _kind(data: xarray.Dataset, dims: tuple[str, ...]) -> Any:
     if dims == ("pose",):
         return _points
     if len(dims) == 1:
         return _curve
     first, second = (_axis(data, name) for name in dims)
-    if (first.is_radius and second.is_turn) or (second.is_radius and first.is_turn):
-        return _polar
-    return _rectangular
+    is_polar = (first.is_radius and second.is_turn) or (second.is_radius and first.is_turn)
+    return _polar if is_polar else _rectangular
 
 
-def _title(values: xarray.DataArray, k: int) -> str:
-    character = str(values["character"].values[k]) if "character" in values.coords else ""
-    low, high = np.nanmin(values[..., k]), np.nanmax(values[..., k])
-    return "\n".join(filter(None, [f"mode {k + 1}: {low:.4g} .. {high:.4g} Hz", character]))
+def _worst_in_words(data: xarray.Dataset, panel: _Panel) -> str:
+    if not panel.worst:
+        return ""
+    place = dict(zip(data["reason"].dims, panel.worst_place(), strict=True))
+    there = data.isel(place)
+    varying = [each for name, each in there.coords.items() if data[name].dims and "pose" not in each.dims]
+    where = ", ".join(_value(each) for each in varying if each.attrs.get("units") in _READABLE)
+    return f"\n{'largest' if panel.worst > 0 else 'lowest'} {panel.value_text()} at {where}"
 
 
-def _polar(figure: Any, place: tuple[int, int, int], data: xarray.Dataset, values: FloatArray, title: str) -> None:
+def _polar(figure: Any, axes: Any, data: xarray.Dataset, panel: _Panel) -> None:
     names = tuple(map(str, data["reason"].dims))
     first, second = (_axis(data, name) for name in names)
-    radius, turn, values = (first, second, values) if second.is_turn else (second, first, values.T)
+    upright = bool(first.is_radius and second.is_turn)
+    radius, turn, panel = (first, second, panel) if upright else (second, first, panel.transposed())
     angles = turn.values
     if np.ptp(angles) < 2.0 * np.pi - 1e-9:
-        angles, values = np.append(angles, angles[0] + 2.0 * np.pi), np.column_stack([values, values[:, :1]])
-    axes = figure.add_subplot(*place, projection="polar")
-    _contours(figure, axes, angles, radius.shown, values)
+        angles, panel = np.append(angles, angles[0] + 2.0 * np.pi), panel.closed()
+    _contours(figure, axes, angles, radius.shown, panel)
     axes.set_rlabel_position(22.5)
     axes.tick_params(labelsize=7)
     axes.set_rticks(np.linspace(radius.shown[0], radius.shown[-1], 4)[1:])
     axes.grid(alpha=0.25)
-    axes.set_title(title, fontsize=9)
     axes.set_xlabel(f"radius {radius.label}, round {turn.label}", fontsize=7)
 
 
-def _rectangular(
-    figure: Any, place: tuple[int, int, int], data: xarray.Dataset, values: FloatArray, title: str
-) -> None:
-    names = tuple(map(str, data["reason"].dims))
-    y, x = (_axis(data, name) for name in names)
-    axes = figure.add_subplot(*place)
-    _contours(figure, axes, x.shown, y.shown, values)
-    axes.set_xlabel(x.label, fontsize=8)
-    axes.set_ylabel(y.label, fontsize=8)
-    axes.tick_params(labelsize=7)
-    axes.set_title(title, fontsize=9)
+def _rectangular(figure: Any, axes: Any, data: xarray.Dataset, panel: _Panel) -> None:
+    y, x = (_axis(data, str(name)) for name in data["reason"].dims)
+    _contours(figure, axes, x.shown, y.shown, panel)
+    _name_axes(axes, x.label, y.label)
 
 
-def _contours(figure: Any, axes: Any, x: FloatArray, y: FloatArray, values: FloatArray) -> None:
-    """Filled and labelled contours of values (y, x), the lowest marked, what is unreachable hatched."""
-    row, column = np.unravel_index(np.nanargmin(values), values.shape)
-    lowest = x[column], y[row]
+def _contours(figure: Any, axes: Any, x: FloatArray, y: FloatArray, panel: _Panel) -> None:
+    """Filled and labelled contours of values (y, x), the worst marked, what is unreachable hatched."""
     rows, columns = _thinned(len(y)), _thinned(len(x))
-    x, y, values = x[columns], y[rows], values[np.ix_(rows, columns)]
-    axes.set_facecolor("white")
-    missing = np.isnan(values)
-    if missing.any():
-        axes.contourf(x, y, missing.astype(float), levels=[0.5, 1.5], colors=["none"], hatches=["////"])
-    if np.ptp(values[~missing]) > 1e-9 * np.abs(values[~missing]).max():
-        filled = axes.contourf(x, y, values, levels=_LEVELS, cmap=_COLOURS)
-        lines = axes.contour(x, y, values, levels=filled.levels[::2], colors="black", linewidths=0.5)
+    values = panel.values[np.ix_(rows, columns)]
+    if np.isnan(values).any():
+        everywhere = np.ones((2, len(columns)))
+        axes.contourf(x[columns], y[[0, -1]], everywhere, levels=[0.5, 1.5], colors=["white"], hatches=["////"])
+    if np.nanmax(values) - np.nanmin(values) > 1e-9 * np.nanmax(np.abs(values)):
+        filled = axes.contourf(x[columns], y[rows], values, levels=_LEVELS, cmap=_COLOURS)
+        lines = axes.contour(x[columns], y[rows], values, levels=filled.levels[::2], colors="black", linewidths=0.5)
         _label(axes, lines)
-        figure.colorbar(filled, ax=axes, shrink=0.8, pad=0.08).set_label("Hz", fontsize=8)
-    axes.plot(*lowest, marker="v", color="white", markeredgecolor="black", markersize=8, clip_on=False, zorder=5)
+        figure.colorbar(filled, ax=axes, shrink=0.8, pad=0.08).set_label(panel.unit, fontsize=8)
+    if panel.worst:
+        row, column = panel.worst_place()
+        _mark(axes, x[column], y[row])
 
 
 def _label(axes: Any, lines: Any) -> None:
@@ -165,34 +233,40 @@ def _label(axes: Any, lines: Any) -> None:
             axes.text(x, y, f"{level:.4g}", fontsize=6, ha="center", va="center", path_effects=halo)
 
 
-def _curve(figure: Any, place: tuple[int, int, int], data: xarray.Dataset, values: FloatArray, title: str) -> None:
-    axis = _axis(data, str(data["reason"].dims[0]))
-    axes = figure.add_subplot(*place)
+def _curve(figure: Any, axes: Any, data: xarray.Dataset, panel: _Panel) -> None:
+    axis, values = _axis(data, str(data["reason"].dims[0])), panel.values
     axes.plot(axis.shown, values, color="C0")
-    low = int(np.nanargmin(values))
-    axes.plot(axis.shown[low], values[low], marker="v", color="white", markeredgecolor="black", markersize=8)
+    if panel.worst:
+        (low,) = panel.worst_place()
+        _mark(axes, axis.shown[low], values[low])
     for start, stop in _runs(np.isnan(values)):
         axes.axvspan(axis.shown[start], axis.shown[stop], facecolor="none", edgecolor="grey", hatch="////", linewidth=0)
-    axes.set_xlabel(axis.label, fontsize=8)
-    axes.set_ylabel("Hz", fontsize=8)
+    _name_axes(axes, axis.label, panel.unit)
     axes.grid(alpha=0.3)
-    axes.set_title(title, fontsize=9)
 
 
-def _points(figure: Any, place: tuple[int, int, int], data: xarray.Dataset, values: FloatArray, title: str) -> None:
-    """A list over the two coordinates that vary most of their range."""
-    named = [str(name) for name in data.coords if data[name].dims == ("pose",)]
-    x, y = (_axis(data, name) for name in (named * 2)[:2])
-    there = np.isfinite(values)
-    axes = figure.add_subplot(*place)
-    drawn = axes.scatter(x.shown[there], y.shown[there], c=values[there], cmap=_COLOURS, s=12)
+def _points(figure: Any, axes: Any, data: xarray.Dataset, panel: _Panel) -> None:
+    """A list over the first two coordinates of which it has more than one value."""
+    along = [_axis(data, str(name)) for name in data.coords if data[name].dims == ("pose",)]
+    x, y = ([axis for axis in along if np.ptp(axis.values) > 0.0] + along * 2)[:2]
+    there = np.isfinite(panel.values)
+    drawn = axes.scatter(x.shown[there], y.shown[there], c=panel.values[there], cmap=_COLOURS, s=12)
     axes.plot(x.shown[~there], y.shown[~there], "x", color="grey", markersize=4)
-    low = int(np.nanargmin(values))
-    axes.plot(x.shown[low], y.shown[low], marker="v", color="white", markeredgecolor="black", markersize=8)
-    figure.colorbar(drawn, ax=axes, shrink=0.8).set_label("Hz", fontsize=8)
-    axes.set_xlabel(x.label, fontsize=8)
-    axes.set_ylabel(y.label, fontsize=8)
-    axes.set_title(title, fontsize=9)
+    if panel.worst:
+        (low,) = panel.worst_place()
+        _mark(axes, x.shown[low], y.shown[low])
+    figure.colorbar(drawn, ax=axes, shrink=0.8).set_label(panel.unit, fontsize=8)
+    _name_axes(axes, x.label, y.label)
+
+
+def _mark(axes: Any, x: float, y: float) -> None:
+    axes.plot(x, y, marker="v", color="white", markeredgecolor="black", markersize=8, clip_on=False, zorder=5)
+
+
+def _name_axes(axes: Any, x: str, y: str) -> None:
+    axes.set_xlabel(x, fontsize=8)
+    axes.set_ylabel(y, fontsize=8)
+    axes.tick_params(labelsize=7)
 
 
 def _axis(data: xarray.Dataset, name: str) -> _Axis:
@@ -201,7 +275,7 @@ def _axis(data: xarray.Dataset, name: str) -> _Axis:
     return _Axis(name, values, factor * values, f"{name} / {unit}" if unit else name)
 
 
-def _fixed(data: xarray.Dataset, dims: tuple[str, ...]) -> str:
+def _fixed(data: xarray.Dataset) -> str:
     """The coordinates that stay where they are, in words."""
     return ", ".join(_value(each) for each in data.coords.values() if not each.dims and "units" in each.attrs)
 
