@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -15,6 +15,9 @@ from .errors import PrsError, short
 from .readable import readable, readable_range
 
 if TYPE_CHECKING:
+    import xarray
+    from numpy.typing import ArrayLike
+
     from .complete_order import CompleteOrder
     from .description.schema import Coupling
     from .joints import ElasticJoint
@@ -136,6 +139,36 @@ class Machine:
     def modes(self, count: int = 8, /, **pose: float) -> Modes:
         """The lowest natural modes at a pose."""
         return self.assemble(self.configuration(**pose)).modes(count)
+
+    def sweep(
+        self,
+        /,
+        *,
+        poses: ArrayLike | None = None,
+        n_modes: int = 6,
+        quantities: str | Iterable[str] = ("frequency",),
+        tolerance: float = 1e-6,
+        band: tuple[float, float] | None = None,
+        progress: Callable[[int, int], None] | None = None,
+        store: str | Path | None = None,
+        cluster: object = None,
+        **coordinates: ArrayLike,
+    ) -> xarray.Dataset:
+        """What is asked at every pose of a grid, or of a list, as a dataset with names and units.
+
+        coordinates: values of each pose coordinate [m, rad], of which all combinations are taken; those left out keep
+        their reference values. poses: a list (N, d) in their place, columns as in `pose_names`.
+        quantities: of prs_model.sweep.QUANTITIES. tolerance: relative, of every frequency beside the dense
+        eigenproblem. band: (lowest, highest) [Hz] in which resonance peaks are sought.
+        progress: called with the number of poses done and of all. store: a folder that keeps what is finished, so that
+        the same call goes on after an interruption. cluster: a Dask client, or the address of its scheduler.
+        Unreachable poses are marked in `reason` and have NaN. Raises PrsError for what cannot be asked of the machine.
+        """
+        from .sweep import Request, poses_of, sweep
+
+        chosen = (quantities,) if isinstance(quantities, str) else tuple(quantities)
+        request = Request(n_modes, chosen, tolerance, band)
+        return sweep(self, poses_of(self, coordinates, poses), request, progress, store, cluster)
 
     def complete_order(self, coupling: Coupling = "averaged", cache: Path | None = None) -> CompleteOrder:
         """The full finite-element model of the assembly, which the reduced one is held against.

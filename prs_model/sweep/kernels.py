@@ -1,0 +1,33 @@
+"""Small symmetric matrices by the hundred thousand, in plain NumPy: no checks, pose axis last.
+
+A batch of p x p matrices is packed as (p (p + 1) / 2, m): the lower triangles row by row, poses innermost.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+
+def unpacked(packed: FloatArray, p: int) -> FloatArray:
+    """(m, p, p) full matrices."""
+    full = np.empty((p, p, packed.shape[1]))
+    rows, columns = np.tril_indices(p)
+    full[rows, columns] = packed
+    full[columns, rows] = packed
+    return np.ascontiguousarray(np.moveaxis(full, 2, 0))
+
+
+def eigenvalues(packed: FloatArray, p: int) -> FloatArray:
+    """(p, m) ascending."""
+    return np.ascontiguousarray(np.linalg.eigvalsh(unpacked(packed, p)).T)
+
+
+def negatives(packed: FloatArray, p: int, slack: float) -> IntArray:
+    """Number of negative eigenvalues (m,), or -1 where one lies within `slack` of zero."""
+    values = np.linalg.eigvalsh(unpacked(packed, p))
+    surely, perhaps = (values < -slack).sum(axis=1), (values < slack).sum(axis=1)
+    return np.where(surely == perhaps, surely, -1)

@@ -1,0 +1,121 @@
+"""How the poses of a sweep are worked out: by interpolation where it is proved good enough, else one by one."""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arrays import BoolArray, FloatArray
+from . import kernels as plain
+from .direct import solved_directly
+from .in_frame import quantities_in_frame
+from .interpolation import Interpolation
+from .plan_arrays import Arrays, from_arrays, to_arrays
+from .planning import interpolated
+from .poses import Poses
+from .quantities import Block, Labels, blank, labels
+from .reasons import reason_codes
+from .request import Request
+
+if TYPE_CHECKING:
+    from ..machine import Machine
+
+INTERPOLATED = 1  # code of `proof`
+_NEAR_LIMIT = 1e-6  # m, rad: within which interpolated joint values are worked out exactly
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """A machine, its poses, what is asked, and the interpolation if there is one; `why` says how that came about."""
+
+    machine: Machine
+    poses: Poses
+    request: Request
+    interpolation: Interpolation | None
+    why: str
+    kernels: Any = field(default=plain, repr=False)
+
+    def evaluate(self, start: int, stop: int) -> Block:
+        """The results at poses start .. stop - 1. Raises PrsError for a machine that is singular in one of them."""
+        found = self.interpolation
+        if found is None:
+            return solved_directly(self.machine, self.request, self.poses.block(start, stop), self._labels, 0.0)
+        values = found.values(self.poses, start, stop)
+        block = blank(self.request, self._labels, stop - start) | self._quantities(found, values)
+        block["reason"][:] = self._reasons(found, values, start, stop)
+        sure = found.complete(values, self.kernels)
+        block["proof"][:] = INTERPOLATED
+        block["bound"] = np.full((stop - start, self.request.n_modes), found.error / 2.0)
+        self._solve(block, np.flatnonzero(~sure & (block["reason"] == 0)), start)
+        _forget(block, block["reason"] != 0)
+        return block
+
+    def to_arrays(self) -> Arrays:
+        """All but machine, poses and request, as numbers and text."""
+        return to_arrays(self.interpolation, self.why)
+
+    @classmethod
+    def from_arrays(cls, machine: Machine, poses: Poses, request: Request, arrays: Arrays) -> Plan:
+        """The plan whose `to_arrays` these are."""
+        return cls(machine, poses, request, *from_arrays(arrays), best_kernels())
+
+    @cached_property
+    def _labels(self) -> Labels:
+        return labels(self.machine, self.request)
+
+    def _quantities(self, found: Interpolation, values: FloatArray) -> Block:
+        if self.request.quantities == ("frequency",):
+            eigenvalues = found.eigenvalues(values, self.kernels)[: self.request.n_modes].T
+            return {"frequency": np.sqrt(np.maximum(eigenvalues, 0.0)) / (2.0 * np.pi)}
+        eigenvalues, vectors = found.modes(values)
+        held = {name: found.carried(values, name) for name in found.shapes}
+        return quantities_in_frame(eigenvalues, vectors, held, self.request, self.machine.description.file.damping)
+
+    def _reasons(self, found: Interpolation, values: FloatArray, start: int, stop: int) -> NDArray[np.int16]:
+        """Codes of joints beyond their limits (m,); those near one are worked out exactly."""
+        codes = np.zeros(stop - start, dtype=np.int16)
+        if found.joints:
+            tree, joints = self.machine.kinematics.tree, list(found.joints)
+            q = values[found.parts["joints"]].T
+            near = ((q < tree.lower[joints] + _NEAR_LIMIT) | (q > tree.upper[joints] - _NEAR_LIMIT)).any(axis=1)
+            doubtful = np.flatnonzero(near)
+            if doubtful.size:
+                poses = self.poses.block(start, stop)[doubtful]
+                exact = self.machine.kinematics.solve_batch(poses).q
+                codes[doubtful] = reason_codes(self.machine.kinematics.reach, exact)
+        return codes
+
+    def _solve(self, block: Block, some: Any, start: int) -> None:
+        """Replace what is not sure by what the dense solver says."""
+        if not some.size or self.interpolation is None:
+            return
+        found, poses = self.interpolation, np.concatenate([self.poses.block(start + i, start + i + 1) for i in some])
+        exact = solved_directly(self.machine, self.request, poses, self._labels, found.frame.shift, found.frame)
+        for name, values in exact.items():
+            block[name][some] = values
+
+
+def _forget(block: Block, unreachable: BoolArray) -> None:
+    for name, values in block.items():
+        if name != "reason":
+            values[unreachable] = 0 if name == "proof" else np.nan
+
+
+def make_plan(machine: Machine, poses: Poses, request: Request, pool: ThreadPoolExecutor) -> Plan:
+    """The plan of a sweep. Raises PrsError for what the machine cannot be asked."""
+    found, why = interpolated(machine, poses, request, pool)
+    return Plan(machine, poses, request, found, why, best_kernels())
+
+
+def best_kernels() -> Any:
+    """The compiled kernels where numba is installed, else those in NumPy."""
+    try:
+        from . import kernels_jit
+    except ImportError:
+        return plain
+    return kernels_jit

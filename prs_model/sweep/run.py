@@ -1,0 +1,133 @@
+"""A sweep from beginning to end: plan, pieces on all cores, dataset."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from contextlib import ExitStack, contextmanager
+from itertools import islice
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .dataset import to_dataset
+from .identity import identity
+from .plan import Plan, make_plan
+from .poses import Poses
+from .quantities import Block
+from .request import Request
+from .store import Store, opened, piece_length
+from .truth import check_damping
+
+if TYPE_CHECKING:
+    import xarray
+
+    from ..machine import Machine
+
+Progress = Callable[[int, int], None]
+"""Called with the number of poses that are done and of all, now and then."""
+
+_UNDER_WAY = 32  # pieces at a time, which bounds memory
+
+
+def sweep(
+    machine: Machine,
+    poses: Poses,
+    request: Request,
+    progress: Progress | None = None,
+    store: str | Path | None = None,
+    cluster: object = None,
+) -> xarray.Dataset:
+    """What is asked at all poses, as a dataset; see Machine.sweep."""
+    check_damping(machine, request)
+    identity_text = identity(machine, poses, request) if store is not None else ""
+    with ExitStack() as held:
+        pool = held.enter_context(workers())
+        kept = held.enter_context(opened(store, identity_text, poses.shape)) if store is not None else None
+        plan = _plan(machine, poses, request, pool, kept)
+        block = _whole(plan, _pieces(plan, kept, pool, cluster), kept, progress)
+        return to_dataset(machine, poses, request, block, certificate(plan, block))
+
+
+def _plan(machine: Machine, poses: Poses, request: Request, pool: ThreadPoolExecutor, kept: Store | None) -> Plan:
+    if kept is None:
+        return make_plan(machine, poses, request, pool)
+    arrays = kept.plan(lambda: make_plan(machine, poses, request, pool).to_arrays())
+    return Plan.from_arrays(machine, poses, request, arrays)
+
+
+def _pieces(plan: Plan, kept: Store | None, pool: ThreadPoolExecutor, cluster: object) -> Iterator[tuple[int, Block]]:
+    """What is not finished yet, by the first pose of each piece, as it becomes ready."""
+    length = piece_length(plan.poses.shape)
+    chunks = kept.unfinished() if kept is not None else _spans(plan.poses.size, length)
+    if cluster is None:
+        evaluated = _evaluated(plan, chunks, pool)
+    else:
+        from .cluster import evaluate
+
+        evaluated = evaluate(cluster, plan, chunks)
+    for index, block in evaluated:
+        if kept is not None:
+            kept.write(index, block)
+        yield chunks[index][0], block
+
+
+def _whole(plan: Plan, pieces: Iterator[tuple[int, Block]], kept: Store | None, progress: Progress | None) -> Block:
+    """All results, from the pieces as they come or, where these are kept, from their files."""
+    size, block = plan.poses.size, {}
+    done = size - sum(stop - start for start, stop in kept.unfinished().values()) if kept is not None else 0
+    for start, piece in pieces:
+        done += len(piece["proof"])
+        if kept is None:
+            for name, values in piece.items():
+                if name not in block:
+                    block[name] = np.full((size, *values.shape[1:]), 0, values.dtype)
+                block[name][start : start + len(values)] = values
+        if progress is not None:
+            progress(done, size)
+    return block if kept is None else kept.gather()
+
+
+def _spans(size: int, length: int) -> dict[int, tuple[int, int]]:
+    return {k: (start, min(start + length, size)) for k, start in enumerate(range(0, size, length))}
+
+
+@contextmanager
+def workers(threads: int | None = None) -> Iterator[ThreadPoolExecutor]:
+    """Threads on all cores this process may use, each with linear algebra of one thread."""
+    from threadpoolctl import threadpool_limits
+
+    available = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
+    with threadpool_limits(1, user_api="blas"), ThreadPoolExecutor(threads or available) as pool:
+        yield pool
+
+
+def certificate(plan: Plan, block: Mapping[str, Any]) -> dict[str, str | int | float]:
+    """What was proved of a sweep, and how, in words and numbers."""
+    proof = block["proof"]
+    facts: dict[str, str | int | float] = {
+        "how": plan.why,
+        "poses_interpolated": int(np.sum(proof == 1)),
+        "poses_solved": int(np.sum(proof == 2)),
+        "poses_unreachable": int(np.sum(proof == 0)),
+    }
+    if plan.interpolation is not None:
+        facts["relative_error_bound"] = plan.interpolation.error / 2.0
+    return facts
+
+
+def _evaluated(
+    plan: Plan, chunks: Mapping[int, tuple[int, int]], pool: ThreadPoolExecutor
+) -> Iterator[tuple[int, Block]]:
+    """Pieces by number, as they become ready; a few under way at a time."""
+    waiting = iter(chunks.items())
+    under_way: dict[Future[Block], int] = {}
+    while True:
+        for index, (start, stop) in islice(waiting, _UNDER_WAY - len(under_way)):
+            under_way[pool.submit(plan.evaluate, start, stop)] = index
+        if not under_way:
+            return
+        for future in wait(under_way, return_when=FIRST_COMPLETED).done:
+            yield under_way.pop(future), future.result()
