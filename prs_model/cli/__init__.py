@@ -13,8 +13,9 @@ from typing import Any
 from .. import __version__
 from ..errors import PrsError, short
 from . import explore, frf, machines, modes, reduce, reducers, report, streams, validate, verify
+from . import map as workspace_map
 
-_COMMANDS = (modes, frf, report, explore, verify, reduce, validate, machines, reducers)
+_COMMANDS = (modes, frf, workspace_map, report, explore, verify, reduce, validate, machines, reducers)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -109,7 +109,7 @@ def draw(data: xarray.Dataset, path: Path, quantity: str = "frequency") -> None:
         projection = "polar" if kind is _polar else None
         axes = figure.add_subplot(rows, columns, k + 1, projection=projection)
         kind(figure, axes, data, panel)
-        axes.set_title(panel.title + _worst_in_words(data, panel), fontsize=9)
+        axes.set_title(panel.title + _worst_in_words(data, panel), fontsize=8)
     figure.suptitle("\n".join(filter(None, [str(data.attrs.get("title", "")), _fixed(data)])), fontsize=11)
     write_figure(figure, path)
 
@@ -147,19 +147,27 @@ def _panels(data: xarray.Dataset, quantity: str) -> list[_Panel]:
     variable = data[quantity].transpose(*data["reason"].dims, ...)
     values = np.asarray(variable.values, dtype=float)
     if quantity == "static_compliance":
-        units = np.diag(data["static_compliance_unit"].values)
+        units = map(str, np.diag(data["static_compliance_unit"].values))
         names = [f"compliance {name}" for name in data["response"].values]
-        return [_Panel(name, values[..., k, k], str(units[k]), 1) for k, name in enumerate(names)]
+        return [
+            _scaled(name, values[..., k, k], unit, 1) for k, (name, unit) in enumerate(zip(names, units, strict=True))
+        ]
     last = str(variable.dims[-1])
     word, unit = "along" if last == "axis" else "mode", str(variable.attrs.get("units", "1"))
     characters = variable.coords.get("character")
     worst = 0 if quantity == "identity" else 1 if quantity == "frf_peak" else -1
     return [
-        _Panel(
+        _scaled(
             f"{word} {name}" + ("" if characters is None else f": {characters.values[k]}"), values[..., k], unit, worst
         )
         for k, name in enumerate(data[last].values)
     ]
+
+
+def _scaled(title: str, values: FloatArray, unit: str, worst: int) -> _Panel:
+    """Compliances per million, so that their numbers are short."""
+    factor = 1e6 if unit.endswith(("/N", "/(N m)")) else 1.0
+    return _Panel(title, factor * values, unit if factor == 1.0 else f"u{unit}", worst)
 
 
 def _kind(data: xarray.Dataset, dims: tuple[str, ...]) -> Any:
@@ -179,7 +187,7 @@ def _worst_in_words(data: xarray.Dataset, panel: _Panel) -> str:
     there = data.isel(place)
     varying = [each for name, each in there.coords.items() if data[name].dims and "pose" not in each.dims]
     where = ", ".join(_value(each) for each in varying if each.attrs.get("units") in _READABLE)
-    return f"\n{'largest' if panel.worst > 0 else 'lowest'} {panel.value_text()} at {where}"
+    return f"\n{'largest' if panel.worst > 0 else 'lowest'} {panel.value_text()}\nat {where}"
 
 
 def _polar(figure: Any, axes: Any, data: xarray.Dataset, panel: _Panel) -> None:

@@ -1,0 +1,182 @@
+"""``prs-model map``: frequencies, and what comes with them, over the whole workspace."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Mapping
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..errors import PrsError
+from ..machine import Machine
+from ..readable import pose_text
+from ..sweep.request import QUANTITIES
+from . import machine_argument, pose_argument
+from .grids import grid_from
+from .pose_list import poses_from_file
+from .progress import bar
+from .table import table
+from .values import assignment, dimension_of, positive, unit_of
+
+if TYPE_CHECKING:
+    import xarray
+
+NAME = "map"
+HELP = "natural frequencies, compliance and tracked modes over the workspace, certified"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The machine, the poses, what is asked of them, and where it goes."""
+    pose_argument.add_machine(parser)
+    which = parser.add_mutually_exclusive_group(required=True)
+    which.add_argument(
+        "--grid",
+        nargs="+",
+        action="extend",
+        type=assignment,
+        metavar="NAME=VALUES",
+        help="every combination of such as nutation=0:30deg:100 precession=0:360deg:3600 z=1275mm; both ends of a "
+        "range are among its values; coordinates left out stand at the reference pose",
+    )
+    which.add_argument(
+        "--poses", type=Path, metavar="FILE.csv", help="a list, a column each coordinate: nutation [deg]"
+    )
+    parser.add_argument("-n", "--count", type=positive, default=6, help="how many modes (default 6)")
+    parser.add_argument(
+        "--quantity",
+        nargs="+",
+        action="extend",
+        default=[],
+        metavar="NAME",
+        help=f"beside frequencies: {', '.join(name for name in QUANTITIES if name != 'frequency')}",
+    )
+    parser.add_argument("--band", nargs=2, type=float, metavar=("LOW", "HIGH"), help="of frf_peak, in Hz")
+    parser.add_argument(
+        "--tolerance", type=float, default=1e-6, help="relative, of every frequency (default 1e-6)", metavar="SHARE"
+    )
+    parser.add_argument(
+        "-o",
+        "--output",
+        nargs="+",
+        action="extend",
+        type=Path,
+        default=[],
+        metavar="FILE",
+        help="write .nc, .zarr, .csv, or a picture .png, .svg, .pdf",
+    )
+    parser.add_argument("--draw", default="frequency", metavar="NAME", help="what a picture shows (default frequency)")
+    parser.add_argument(
+        "--store",
+        type=Path,
+        metavar="DIR",
+        help="keep finished pieces there, and go on from them after an interruption",
+    )
+    machine_argument.add_settings(parser)
+
+
+def run(options: argparse.Namespace) -> dict[str, Any]:
+    """Sweep the workspace, and write where asked."""
+    from ..sweep.files import PICTURES, check_file, save
+    from ..sweep.picture import check_drawing
+    from ..sweep.request import Request
+
+    band = None if options.band is None else tuple(options.band)
+    quantities = tuple(dict.fromkeys(["frequency", *options.quantity]))
+    Request(options.count, quantities, options.tolerance, band)
+    for file in options.output:
+        check_file(file)
+        if file.suffix.lower() in PICTURES:
+            check_drawing(options.draw)
+    machine = machine_argument.changed(options)
+    poses = _poses(machine, options)
+    start = perf_counter()
+    with bar(quiet=options.quiet, unit="poses") as progress:
+        data = machine.sweep(
+            **poses,
+            n_modes=options.count,
+            quantities=quantities,
+            tolerance=options.tolerance,
+            band=band,
+            progress=progress,
+            store=options.store,
+        )
+    seconds = perf_counter() - start
+    for file in options.output:
+        save(data, file, options.draw)
+    return {**summary(machine, data), "seconds": seconds, "files": [str(file) for file in options.output]}
+
+
+def show(outcome: dict[str, Any]) -> str:
+    """A table of the modes: how low and how high they go, and where; what could not be reached, and what was proved."""
+    kinds = {name: dimension_of(unit) for name, unit in outcome["pose_units"].items()}
+    rows = [("mode", "lowest/Hz", "at", "highest/Hz", "median/Hz")]
+    for mode in outcome["modes"]:
+        where = pose_text(mode["lowest_at"], kinds)
+        low, high, middle = (f"{mode[f'{which}_hz']:.3f}" for which in ("lowest", "highest", "median"))
+        rows.append((str(mode["number"]), low, where, high, middle))
+    rate = outcome["poses"] / max(outcome["seconds"], 1e-9)
+    title = f"{outcome['machine']}: {outcome['poses']:,} poses in {outcome['seconds']:.2f} s ({rate:,.0f} a second)"
+    lines = [title, "", table(rows) if outcome["modes"] else "no pose is reachable"]
+    lines += [f"{each['poses']:,} poses: {each['reason']}" for each in outcome["unreachable"]]
+    lines += ["", *(f"{name.replace('_', ' ')}: {value}" for name, value in outcome["certificate"].items())]
+    return "\n".join([*lines, *(f"written to {file}" for file in outcome["files"])])
+
+
+def summary(machine: Machine, data: xarray.Dataset) -> dict[str, Any]:
+    """What a map says in short: the extremes of every mode and where, unreachable poses by reason, the certificate."""
+    kinds = machine.kinematics.task.coordinates
+    frequency = data["frequency"].transpose("mode", ...)
+    reason = data["reason"]
+    sentences = dict(zip(reason.attrs["flag_values"].tolist(), _sentences(reason.attrs), strict=True))
+    counts = dict(zip(*(each.tolist() for each in np.unique(reason.values, return_counts=True)), strict=True))
+    reachable = counts.get(0, 0) > 0
+    return {
+        "machine": machine.name,
+        "poses": int(reason.size),
+        "pose_units": {name: unit_of(kind) for name, kind in kinds.items()},
+        "quantities": data.attrs["quantities"].split(),
+        "modes": [_extremes(frequency[k], machine.pose_names) for k in range(len(frequency))] if reachable else [],
+        "unreachable": [{"reason": sentences[code], "poses": number} for code, number in counts.items() if code != 0],
+        "certificate": {
+            name.removeprefix("certificate_"): value
+            for name, value in data.attrs.items()
+            if name.startswith("certificate_")
+        },
+    }
+
+
+def _sentences(flags: Mapping[str, str]) -> list[str]:
+    return [each.split(": ", 1)[1] for each in flags["flag_sentences"].split("; ")]
+
+
+def _extremes(frequency: xarray.DataArray, names: tuple[str, ...]) -> dict[str, Any]:
+    values = frequency.values
+    low, high = (np.unravel_index(each(values), values.shape) for each in (np.nanargmin, np.nanargmax))
+
+    def at(place: Any) -> dict[str, float]:
+        there = frequency[place]
+        return {name: float(there[name]) for name in names}
+
+    return {
+        "number": int(frequency["mode"]),
+        "lowest_hz": float(values[low]),
+        "lowest_at": at(low),
+        "highest_hz": float(values[high]),
+        "highest_at": at(high),
+        "median_hz": float(np.nanmedian(values)),
+    }
+
+
+def _poses(machine: Machine, options: argparse.Namespace) -> dict[str, Any]:
+    """The arguments of Machine.sweep that say where."""
+    coordinates = machine.kinematics.task.coordinates
+    if options.poses is not None:
+        return {"poses": poses_from_file(options.poses, machine)}
+    grid = grid_from(options.grid, coordinates)
+    clash = set(grid) & {"poses", "n_modes", "quantities", "tolerance", "band", "progress", "store"}
+    if clash:
+        raise PrsError(f"--grid {', '.join(clash)}: no pose coordinate; known: {', '.join(machine.pose_names)}")
+    return dict(grid)
