@@ -12,6 +12,9 @@ from ..machine import Machine
 from ..modes import Modes
 from ..reduction import SuperElement, TravellingElement
 from ..response import FrequencyResponse
+from ..response.band import around
+from ..response.damping import damping_of
+from ..response.modal_equations import damping_ratios
 from ..synthesis import assemble
 from .stiffness import Factors, scaled_joints
 
@@ -20,7 +23,7 @@ Parts = Mapping[str, SuperElement | TravellingElement]
 DEFAULT_DAMPING = 0.01
 """Modal damping ratio for the frequency response of a machine that states no damping."""
 
-_BAND = (0.1, 1.5)  # of the first and the last frequency shown
+_BAND = (0.1, 1.25)  # of the first and the last frequency shown
 _LINES = 400
 
 
@@ -67,8 +70,8 @@ def band_of(modes: Modes) -> FloatArray:
 
 def _response(modes: Modes, band: FloatArray | None, damping: float | None) -> FrequencyResponse | None:
     band = band_of(modes) if band is None else band
-    frequencies = modes.frequencies
     if not band.size or modes.is_rigid.all():
         return None
-    peaks = frequencies[(frequencies > band[0]) & (frequencies < band[-1])]
-    return modes.frequency_response(np.union1d(band, peaks), damping)
+    every, model = modes.system.modes(modes.system.size), damping_of(modes.system, damping)
+    peaks = around(every, damping_ratios(every, model))
+    return every.frequency_response(np.union1d(band, peaks[(peaks > band[0]) & (peaks < band[-1])]), model)

@@ -153,16 +153,18 @@ class Modes:
         to: str | None = None,
         at: str | None = None,
         quantity: Response = "receptance",
-        static_correction: bool = True,
+        static_correction: bool | None = None,
+        residual_vectors: bool = False,
     ) -> StateSpace:
         """x' = A x + B f, y = C x + D f with x = (q, q') of these modes; nodes and damping as in `frf`.
 
-        static_correction: D of a receptance is what the modes left out do at rest. Raises PrsError for loss factors,
-        which have no model in time.
+        static_correction: D of a receptance is what the modes left out do at rest (default); other quantities have no
+        such constant. residual_vectors: stand for the modes left out instead, as in `frf`, some thirty fast modes more
+        for a node and sixty for two, for every quantity. Raises PrsError for loss factors, which have no model in time.
         """
         from ..response.state_space import state_space
 
-        return state_space(self, damping, to, at, quantity, static_correction)
+        return state_space(self, damping, to, at, quantity, static_correction, residual_vectors)
 
     def table(self) -> xarray.Dataset:
         """Frequencies, characters, energies and flexibilities by mode, with names and units."""

@@ -10,15 +10,15 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..readable import pose_text
+from ..response.band import band
 from ..response.damping import damping_of, is_proportional, modal_ratios
+from ..response.modal_equations import damping_ratios
 
 if TYPE_CHECKING:
     from ..description.schema import Damping
     from ..machine import Machine
     from ..modes import Modes
     from ..response import DampingLike, FrequencyResponse, WeakMode
-
-_LINES = 1000
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,8 +84,8 @@ def _at_rest(modes: Modes) -> AtRest | None:
 
 
 def _response(modes: Modes, damping: Damping) -> FrequencyResponse | None:
-    elastic = modes.frequencies[modes.frequencies > 0.0]
-    if not elastic.size:
+    shown = int(np.sum(~modes.is_rigid))
+    if not shown:
         return None
-    frequencies = np.linspace(0.1 * elastic[0], 1.25 * elastic[-1], _LINES)
-    return modes.system.modes(modes.system.size).frequency_response(frequencies, damping)
+    every = modes.system.modes(modes.system.size)
+    return every.frequency_response(band(every, damping_ratios(every, damping), shown), damping)

@@ -16,6 +16,7 @@ from .quantity import ComplexArray
 if TYPE_CHECKING:
     from ..synthesis import System
 
+_ROUND_OFF = 1e-12  # of a damping ratio
 _STILL = 1e-6  # of the first elastic rate: what is slower is rigid motion and its round-off
 
 
@@ -41,8 +42,9 @@ class ComplexModes:
 
     @property
     def damping_ratios(self) -> FloatArray:
-        """-Re s / |s| (k,); half the loss factor where that is small and the same everywhere."""
-        return np.asarray(-self.poles.real / np.abs(self.poles))
+        """-Re s / |s| (k,), round-off as 0; half the loss factor where that is small and the same everywhere."""
+        ratios = -self.poles.real / np.abs(self.poles)
+        return np.asarray(np.where(np.abs(ratios) < _ROUND_OFF, 0.0, ratios))
 
     @property
     def output_shapes(self) -> ComplexArray:

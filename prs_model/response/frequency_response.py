@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,6 +24,10 @@ from .quantity import (
     pair_of,
     unit,
 )
+from .residual import is_truncated
+
+_BEYOND = 1.3  # times the last frequency kept: up to there most of what is left out is known at rest
+_log = logging.getLogger("prs_model")
 
 if TYPE_CHECKING:
     import xarray
@@ -103,6 +108,7 @@ def of_modes(
     frequencies = frequencies_from(frequencies_hz)
     model = damping_of(modes.system, damping)
     ends = point(modes.system, to), point(modes.system, at)
+    _warn_beyond(modes, frequencies)
     receptance = modal_receptance(modes, frequencies, model, *ends, static_correction)
     values = from_receptance(receptance, frequencies, quantity)
     return FrequencyResponse(frequencies, values, quantity, ends[0].name, ends[1].name)
@@ -123,3 +129,15 @@ def of_system(
     ends = point(system, to), point(system, at)
     values = from_receptance(direct_receptance(system, frequencies, model, *ends), frequencies, quantity)
     return FrequencyResponse(frequencies, values, quantity, ends[0].name, ends[1].name)
+
+
+def _warn_beyond(modes: Modes, frequencies: FloatArray) -> None:
+    last, highest = float(modes.frequencies[-1]), float(frequencies.max())
+    if is_truncated(modes) and highest > _BEYOND * last > 0.0:
+        _log.warning(
+            "the response is asked for up to %.4g Hz, and the last of %d modes is at %.4g Hz: beyond that it is a "
+            "guess; take more modes, or System.frf",
+            highest,
+            len(modes.frequencies),
+            last,
+        )

@@ -43,3 +43,16 @@ def modal_equations(modes: Modes, damping: Damping) -> ModalEquations:
         not is_proportional(damping),
         has_loss_factors(damping),
     )
+
+
+def damping_ratios(modes: Modes, damping: Damping) -> FloatArray:
+    """xi (k,) by the diagonal of Phi^T (omega C + H) Phi over 2 omega^2; nan for rigid-body modes.
+
+    Exactly those of modal ratios and Rayleigh's constants; where joints damp, those of complex modes to first order.
+    """
+    equations = modal_equations(modes, damping)
+    elastic = equations.eigenvalues > 0.0
+    omega = np.sqrt(equations.eigenvalues[elastic])
+    ratios = np.full(len(elastic), np.nan)
+    ratios[elastic] = (np.diag(equations.viscous)[elastic] + np.diag(equations.loss)[elastic] / omega) / (2.0 * omega)
+    return ratios

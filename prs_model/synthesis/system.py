@@ -173,6 +173,8 @@ class System:
         to: str | None = None,
         at: str | None = None,
         quantity: Response = "receptance",
+        static_correction: bool | None = None,
+        residual_vectors: bool = False,
     ) -> StateSpace:
         """A, B, C, D on the lowest so many modes; see Modes.state_space."""
-        return self.modes(modes).state_space(damping, to, at, quantity)
+        return self.modes(modes).state_space(damping, to, at, quantity, static_correction, residual_vectors)

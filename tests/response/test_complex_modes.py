@@ -40,6 +40,7 @@ def test_two_masses_with_a_loss_factor(tmp_path: Path) -> None:
 def test_without_damping_they_are_the_real_modes(tmp_path: Path) -> None:
     system = gantry(tmp_path).assemble()
     real = system.modes(8)
+    assert "-0" not in repr(system.complex_modes(8, 0.0))
     for damping, distance in ((0.0, 1e-9), ({"joints": {"X": {"viscous": 1e-10}, "Y": {"loss_factor": 1e-7}}}, 1e-5)):
         modes = system.complex_modes(8, damping)
         assert modes.frequencies == pytest.approx(real.frequencies, rel=1e-8)

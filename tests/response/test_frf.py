@@ -115,6 +115,15 @@ def test_a_free_machine_answers_too(tmp_path: Path) -> None:
         system.modes(3).frf([0.5])
 
 
+def test_far_beyond_the_modes_kept_is_a_guess(system: System, caplog: pytest.LogCaptureFixture) -> None:
+    modes = system.modes(3)
+    modes.frf([5.0, 1.2 * modes.frequencies[-1]])
+    system.modes(system.size).frf([5.0, 1e5])
+    assert not caplog.text
+    modes.frf([5.0, 1.4 * modes.frequencies[-1]])
+    assert "the last of 3 modes is at" in caplog.text
+
+
 def test_motions_without_mass_follow_at_once(tmp_path: Path) -> None:
     """Mass 1 left out: two springs in a row carry mass 2, and their joint follows at once."""
     system = row(tmp_path).assemble()

@@ -19,16 +19,13 @@ def test_its_transfer_function_is_the_frf(tmp_path: Path, quantity: str) -> None
     frequencies = np.array([5.0, 80.0, 300.0])
     damping = {"modal": 0.02, "joints": {"X": {"viscous": 1e-5}}}
     model = modes.state_space(damping, to="table.end", quantity=quantity)
-    found = [
-        model.c @ np.linalg.solve(2j * np.pi * f * np.eye(len(model.a)) - model.a, model.b) + model.d
-        for f in frequencies
-    ]
+    found = model.frf(frequencies)
     expected = modes.frf(frequencies, damping, "table.end", None, quantity, static_correction=False)
     if quantity == "receptance":  # what the modes left out do at rest
         expected = expected + (
             modes.static_compliance("table.end") - modes.frf([1e-4], 0.0, "table.end", static_correction=False)[0].real
         )
-    assert np.array(found) == pytest.approx(expected, rel=1e-9, abs=1e-9 * np.abs(expected).max())
+    assert found == pytest.approx(expected, rel=1e-9, abs=1e-9 * np.abs(expected).max())
 
 
 def test_an_impulse_simulated_by_python_control_has_the_frf_as_its_spectrum(tmp_path: Path) -> None:
@@ -72,6 +69,13 @@ def test_a_steady_force_ends_in_the_static_displacement(tmp_path: Path) -> None:
     forces = np.zeros((4000, 6))
     forces[:, 0] = 5.0
     assert model.response(forces, 1e-3)[-1, 0] == pytest.approx(5.0 * (1.0 / K1 + 1.0 / K2), rel=1e-9)
+
+
+def test_a_correction_that_would_do_nothing_is_refused(tmp_path: Path) -> None:
+    modes = row(tmp_path).modes(1)
+    for given in ({"quantity": "mobility"}, {"quantity": "accelerance"}, {"residual_vectors": True}):
+        with pytest.raises(prs.PrsError, match="in a receptance only; take residual_vectors"):
+            modes.state_space(0.02, static_correction=True, **given)
 
 
 def test_a_loss_factor_has_no_model_in_time(tmp_path: Path) -> None:
