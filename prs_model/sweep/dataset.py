@@ -106,7 +106,8 @@ def _identities(machine: Machine, poses: Poses, request: Request, block: Block) 
     import xarray
 
     reference = np.array([machine.reference_pose[name] for name in poses.names])
-    found = follow(poses, reference, block["frame_frequency"], block["vectors"], request.n_modes)
+    frequencies, vectors = np.asarray(block["frame_frequency"]), np.asarray(block["vectors"])  # may be read lazily
+    found = follow(poses, reference, frequencies, vectors, request.n_modes)
     start = dict(zip(poses.names, poses.block(found.start, found.start + 1)[0].tolist(), strict=True))
     place = pose_text(start, machine.kinematics.task.coordinates)
     coordinates = _pose_coordinates(machine, poses)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .. import __version__
 from ..reduction.recipe import file_hash
 from ..reduction.store import provenance
 from .request import Request
@@ -21,13 +22,13 @@ VERSION = 1  # raised when a sweep changes its results
 
 
 def identity(machine: Machine, poses: Poses, request: Request) -> str:
-    """Canonical JSON: machine as described and changed, content of its URDF and part files, poses, what is asked.
+    """Canonical JSON: program, machine as described and changed, content of its files, poses, what is asked.
 
     Two sweeps with one identity have the same results, up to rounding that differs between processors.
     """
     description = machine.description
     content = {
-        "version": VERSION,
+        "program": f"prs-model {__version__}, sweep {VERSION}",
         "machine": description.file.model_dump(mode="json"),
         "urdf": file_hash(description.urdf_path),
         "parts": {name: _made_from(provenance(part)) for name, part in machine.parts.items()},

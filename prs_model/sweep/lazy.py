@@ -2,17 +2,27 @@
 
 from __future__ import annotations
 
+from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
 from ..errors import MissingExtraError
 from .store import Store
 
 if TYPE_CHECKING:
-    import dask.array
     from numpy.typing import NDArray
 
+IN_MEMORY = 2**30  # bytes
 
-def lazy(store: Store) -> dict[str, NDArray[Any] | dask.array.Array]:
+
+def results(store: Store) -> dict[str, Any]:
+    """The results of all pieces: in memory, or lazy where they are many and Dask is installed."""
+    start, stop = store.chunks[0]
+    size = sum(values.nbytes for values in store.read(0).values()) * store.size / (stop - start)
+    small = size <= IN_MEMORY or find_spec("dask") is None
+    return dict(store.gather()) if small else lazy(store)
+
+
+def lazy(store: Store) -> dict[str, Any]:
     """The results of all pieces as arrays of Dask, one chunk each piece; those with one number per pose in memory.
 
     A dataset of them is written to NetCDF or Zarr chunk by chunk. Raises PrsError for a first piece that is missing or

@@ -104,9 +104,13 @@ class Store:
     def gather(self, *names: str) -> Block:
         """All results in memory, or those of some names. Raises PrsError for a piece that is missing or damaged."""
         first = self.read(0, *names)
-        block = {name: np.empty((self.size, *values.shape[1:]), values.dtype) for name, values in first.items()}
+        shapes = {name: values.shape[1:] for name, values in first.items()}
+        block = {name: np.empty((self.size, *shapes[name]), values.dtype) for name, values in first.items()}
         for index, (start, stop) in self.chunks.items():
-            for name, values in self.read(index, *names).items():
+            piece = self.read(index, *names)
+            if {name: values.shape[1:] for name, values in piece.items()} != shapes:
+                raise PrsError(f"{self._path(index)}: holds other arrays than the first piece; delete {self.folder}")
+            for name, values in piece.items():
                 block[name][start:stop] = values
         return block
 
