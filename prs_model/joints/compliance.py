@@ -19,6 +19,7 @@ from ..arrays import BoolArray, FloatArray
 from ..errors import PrsError
 
 _RANK_TOLERANCE = 1e-10
+_CLEARLY = 1e-4  # how much of a row is new, at least, where rows are clearly independent
 _ROUND_OFF = 1e-14
 
 
@@ -133,6 +134,9 @@ def elastic_and_rigid(compliance: FloatArray) -> tuple[FloatArray, FloatArray]:
     The rank is decided on C scaled to a unit diagonal, so that metres and radians do not matter; a diagonal
     entry that is round-off beside the largest one is zero. Raises PrsError when it differs within a stack.
     """
+    if not compliance.any():
+        size = compliance.shape[-1]
+        return np.zeros((size, size)), np.eye(size)
     scale = _unit_scale(compliance)
     values, vectors = np.linalg.eigh(compliance * scale[..., :, None] * scale[..., None, :])
     largest = values.max(axis=-1, initial=0.0, keepdims=True)
@@ -144,7 +148,15 @@ def elastic_and_rigid(compliance: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def null_space(matrix: FloatArray) -> FloatArray:
-    """Orthonormal basis (n, n - rank) of the null space of a matrix (m, n), or of a stack of them."""
+    """Orthonormal basis (n, n - rank) of the null space of a matrix (m, n), or of a stack of them.
+
+    Rows that are clearly independent need no singular values; what is orthogonal to them is found faster without.
+    """
+    if matrix.shape[-2] < matrix.shape[-1]:
+        full, triangle = np.linalg.qr(_transposed(matrix), mode="complete")
+        sizes = np.abs(np.diagonal(triangle, axis1=-2, axis2=-1))
+        if np.all(sizes > _CLEARLY * sizes.max(axis=-1, initial=0.0, keepdims=True)):
+            return np.asarray(full[..., matrix.shape[-2] :])
     _, values, right = np.linalg.svd(matrix)
     return np.asarray(_transposed(right[..., _rank(_present(values)) :, :]))
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import pinocchio as pin
@@ -87,7 +88,11 @@ class ElasticStage:
 
     def lumped(self, values: Mapping[str, ArrayLike]) -> JointCompliance:
         """All its sides gathered at the origin of its frame (eq. 11, 12)."""
-        return parallel([side.law.moved(_action(side.place)) for side in self.at(values)])
+        return self._undriven if self.drive is None else _gathered(self.at(values))
+
+    @cached_property
+    def _undriven(self) -> JointCompliance:
+        return _gathered(self.sides)
 
 
 @dataclass(frozen=True, eq=False)
@@ -179,6 +184,10 @@ def _stage(stage: Stage, urdf: Urdf) -> ElasticStage:
     sides = tuple(Side(*face) for face in faces)
     frame = urdf.joints[stage.urdf].child if stage.urdf is not None else str(stage.frame)
     return ElasticStage(frame, sides, stage.drive, stage.urdf, free)
+
+
+def _gathered(sides: Sequence[Side]) -> JointCompliance:
+    return parallel([side.law.moved(_action(side.place)) for side in sides])
 
 
 def _place(at: tuple[float, float, float] | None) -> pin.SE3:

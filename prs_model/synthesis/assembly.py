@@ -15,7 +15,7 @@ from ..joints import ElasticJoint, Spring
 from ..kinematics import Configuration, Configurations
 from ..reduction import Elements, SuperElement, TravellingElement
 from .elimination import independent_coordinates
-from .ends import Ends
+from .ends import Ends, RelativeDisplacement
 from .system import Coordinate, SpringMotion, System
 
 Bodies: TypeAlias = Mapping[str, SuperElement] | Mapping[str, Elements]
@@ -140,16 +140,41 @@ def joined(
     *many, _, size = stiffness.shape
     motions, constraints, sizes = [], [np.zeros((*many, 0, size))], [np.zeros((*many, 0))]
     for spring in springs:
-        law, relative = spring.law, ends.relative_displacement(spring)
-        rows, motion = relative.rows, relative.motion
-        motions.append(SpringMotion(spring.joint, spring.interface, rows, motion, law.stiffness))
-        stiffness[..., rows[:, None], rows] += _transposed(motion) @ law.stiffness @ motion
-        rigid = _transposed(law.rigid_wrenches)
-        constraints.append(np.zeros((*many, rigid.shape[-2], size)))
-        constraints[-1][..., rows] = rigid @ motion
-        sizes.append(np.zeros((*many, rigid.shape[-2])))
-        sizes[-1][:] = np.linalg.norm(np.abs(rigid) @ relative.size, axis=-1)
+        relative, law = ends.relative_displacement(spring), spring.law
+        motions.append(SpringMotion(spring.joint, spring.interface, relative.blocks, relative.motions, law.stiffness))
+        _stiffen(stiffness, motions[-1])
+        if law.rigid_wrenches.shape[-1]:
+            rows, size_of_rows = _rigid_rows(law.rigid_wrenches, relative, stiffness.shape)
+            constraints.append(rows)
+            sizes.append(size_of_rows)
     return tuple(motions), np.concatenate(constraints, axis=-2), np.concatenate(sizes, axis=-1)
+
+
+def _stiffen(stiffness: FloatArray, spring: SpringMotion) -> None:
+    """K + D^T k D, by the bodies that the spring joins."""
+    if not spring.stiffness.any():
+        return
+    ends = list(zip(spring.blocks, spring.motions, strict=True))
+    for place, (block, motion) in enumerate(ends):
+        force = _transposed(motion) @ spring.stiffness
+        stiffness[..., block, block] += force @ motion
+        for other, other_motion in ends[place + 1 :]:
+            coupling = force @ other_motion
+            stiffness[..., block, other] += coupling
+            stiffness[..., other, block] += _transposed(coupling)
+
+
+def _rigid_rows(
+    wrenches: FloatArray, relative: RelativeDisplacement, shape: tuple[int, ...]
+) -> tuple[FloatArray, FloatArray]:
+    """G (r, N) of the rigid directions of a spring, and the sizes (r,), where `shape` is that of the stiffness."""
+    rigid = _transposed(wrenches)
+    rows = np.zeros((*shape[:-2], rigid.shape[-2], shape[-1]))
+    squares = np.zeros(rows.shape[:-1])
+    for block, motion, size in zip(relative.blocks, relative.motions, relative.sizes, strict=True):
+        rows[..., block] = rigid @ motion
+        squares += np.sum((np.abs(rigid) @ size) ** 2, axis=-1)
+    return rows, np.sqrt(squares)
 
 
 def _independent(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -95,6 +95,5 @@ def _elements(
 
 def _stacked(motion: SpringMotion, count: int) -> SpringMotion:
     """With an entry for every configuration, also where all are the same."""
-    displacement = np.broadcast_to(motion.displacement, (count, *motion.displacement.shape[-2:]))
-    stiffness = np.broadcast_to(motion.stiffness, (count, 6, 6))
-    return SpringMotion(motion.joint, motion.interface, motion.rows, displacement, stiffness)
+    motions = tuple(np.broadcast_to(each, (count, *each.shape[-2:])) for each in motion.motions)
+    return replace(motion, motions=motions, stiffness=np.broadcast_to(motion.stiffness, (count, 6, 6)))

@@ -21,14 +21,23 @@ Placement: TypeAlias = pin.SE3 | Placements
 
 @dataclass(frozen=True, eq=False)
 class RelativeDisplacement:
-    """Motion (6, k) of end B less that of end A on the coordinates `rows` (k,), in the spring's axes.
+    """Motion of end B less that of end A in the spring's axes, on the coordinates of the bodies that have these ends.
 
-    `size` (6, k) is the sum of the two motions' magnitudes: entries far below it are round-off.
+    blocks: the bodies' rows, in ascending order; ends: for each the motions (6, n_b) of the ends it has, signed.
     """
 
-    rows: IntArray
-    motion: FloatArray
-    size: FloatArray
+    blocks: tuple[slice, ...]
+    ends: tuple[tuple[FloatArray, ...], ...]
+
+    @property
+    def motions(self) -> tuple[FloatArray, ...]:
+        """(6, n_b) for each block."""
+        return tuple(ends[0] if len(ends) == 1 else ends[0] + ends[1] for ends in self.ends)
+
+    @property
+    def sizes(self) -> tuple[FloatArray, ...]:
+        """Sums of the two motions' magnitudes: entries of `motions` far below them are round-off."""
+        return tuple(np.sum([np.abs(end) for end in ends], axis=0) for ends in self.ends)
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,16 +54,15 @@ class Ends:
 
     def relative_displacement(self, spring: Spring) -> RelativeDisplacement:
         """What the spring feels; both ends may be on one body, one may be the ground."""
-        signed = [(end, sign) for end, sign in zip(spring.between, (-1.0, 1.0), strict=True) if end != "ground"]
-        motions = [(sign, *self.motion(end, spring.interface, spring.placement)) for end, sign in signed]
-        rows = np.unique(np.concatenate([rows for _, rows, _ in motions]))
-        many = np.broadcast_shapes(*(motion.shape[:-2] for *_, motion in motions))
-        relative, size = np.zeros((*many, 6, len(rows))), np.zeros((*many, 6, len(rows)))
-        for sign, own, motion in motions:
-            place = np.searchsorted(rows, own)
-            relative[..., place] += sign * motion
-            size[..., place] += np.abs(motion)
-        return RelativeDisplacement(rows, relative, size)
+        found: dict[str, list[FloatArray]] = {}
+        for end, sign in zip(spring.between, (-1.0, 1.0), strict=True):
+            if end != "ground":
+                _, motion = self.motion(end, spring.interface, spring.placement)
+                found.setdefault(end.split(".", 1)[0], []).append(sign * motion)
+        bodies = sorted(found, key=lambda body: self.blocks[body].start)
+        return RelativeDisplacement(
+            tuple(self.blocks[body] for body in bodies), tuple(tuple(found[body]) for body in bodies)
+        )
 
     def gap(self, springs: Sequence[Spring]) -> float:
         """Distance [m] between the nodes at which the ends of a joint's springs are read; the ground's is their place.

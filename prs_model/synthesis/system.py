@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
 import pinocchio as pin
 
 from ..arrays import FloatArray, IntArray
@@ -33,13 +34,26 @@ class Coordinate(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class SpringMotion:
-    """Relative displacement D (6, k) of a spring's ends on body coordinates `rows` (k,), and its stiffness (6, 6)."""
+    """Relative displacement D (6, k) of a spring's ends on body coordinates `rows` (k,), and its stiffness (6, 6).
+
+    blocks, motions: D by the bodies, (6, n_b) each on their rows. In many configurations all are stacks (N, ..).
+    """
 
     joint: str
     interface: str | None
-    rows: IntArray
-    displacement: FloatArray
+    blocks: tuple[slice, ...]
+    motions: tuple[FloatArray, ...]
     stiffness: FloatArray
+
+    @property
+    def rows(self) -> IntArray:
+        """The bodies' coordinates (k,), ascending."""
+        return np.concatenate([np.arange(block.start, block.stop) for block in self.blocks])
+
+    @cached_property
+    def displacement(self) -> FloatArray:
+        """D (6, k), or (N, 6, k)."""
+        return np.concatenate(self.motions, axis=-1)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
