@@ -6,11 +6,9 @@ one makes curves; more make the map of the first two at the middle of the others
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import ceil
 from pathlib import Path
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,21 +19,10 @@ from ..description.units import Dimension
 from ..errors import MissingExtraError, PrsError, UnknownNameError
 from ..modes.figure_file import write_figure
 from ..readable import readable
+from .panels import DRAWABLE, Panel, panels_of
 
 if TYPE_CHECKING:
     import xarray
-
-DRAWABLE: Mapping[str, str] = MappingProxyType(
-    {
-        "frequency": "frequency",
-        "tracked_frequency": "identity",
-        "identity": "identity",
-        "static_compliance": "static_compliance",
-        "frf_peak": "frf_peak",
-        "frf_peak_frequency": "frf_peak",
-    }
-)
-"""What can be drawn, and the quantity it comes with."""
 
 _COLOURS = "cividis"  # the same to the colour-blind
 _LEVELS = 12
@@ -63,30 +50,6 @@ class _Axis:
         return bool(self.values[0] >= 0.0 and self.values[0] <= 0.1 * np.ptp(self.values))
 
 
-@dataclass(frozen=True, eq=False)
-class _Panel:
-    """One map: values over the poses, their unit, and which end is the worst: -1 the lowest, 1 the largest, 0 none."""
-
-    title: str
-    values: FloatArray
-    unit: str
-    worst: int
-
-    def worst_place(self) -> tuple[int, ...]:
-        flat = np.nanargmin(-self.worst * self.values)
-        return tuple(int(k) for k in np.unravel_index(flat, self.values.shape))
-
-    def value_text(self) -> str:
-        return f"{self.values[self.worst_place()]:.4g} {self.unit}"
-
-    def transposed(self) -> _Panel:
-        return replace(self, values=self.values.T)
-
-    def closed(self) -> _Panel:
-        """With the first column once more at the end."""
-        return replace(self, values=np.column_stack([self.values, self.values[:, :1]]))
-
-
 def draw(data: xarray.Dataset, path: Path, quantity: str = "frequency") -> None:
     """Draw a quantity of a sweep's dataset, a panel for each mode or direction, into a PNG, SVG or PDF file.
 
@@ -100,17 +63,17 @@ def draw(data: xarray.Dataset, path: Path, quantity: str = "frequency") -> None:
         middle = {name: data.sizes[name] // 2 for name in dims[2:]}
         data = data.isel(middle)
         dims = dims[:2]
-    panels = _panels(data, quantity)
+    panels = panels_of(data, quantity)
     columns = min(len(panels), 3)
     rows = ceil(len(panels) / columns)
-    figure = figure_class(figsize=(4.6 * columns, 3.9 * rows + 0.6), layout="constrained")
+    figure = figure_class(figsize=(4.6 * columns, 4.2 * rows + 0.9), layout="constrained")
     kind = _kind(data, dims)
     for k, panel in enumerate(panels):
         projection = "polar" if kind is _polar else None
         axes = figure.add_subplot(rows, columns, k + 1, projection=projection)
         kind(figure, axes, data, panel)
         axes.set_title(panel.title + _worst_in_words(data, panel), fontsize=8)
-    figure.suptitle("\n".join(filter(None, [str(data.attrs.get("title", "")), _fixed(data)])), fontsize=11)
+    figure.suptitle("\n".join([str(data.attrs.get("title", "")), _subtitle(data, quantity)]), fontsize=11)
     write_figure(figure, path)
 
 
@@ -142,34 +105,6 @@ def _check(data: xarray.Dataset, quantity: str) -> None:
         raise PrsError(f"picture: no pose has a value of {quantity}: all are unreachable, or the machine is not held")
 
 
-def _panels(data: xarray.Dataset, quantity: str) -> list[_Panel]:
-    """One for each mode; of a compliance, for each direction."""
-    variable = data[quantity].transpose(*data["reason"].dims, ...)
-    values = np.asarray(variable.values, dtype=float)
-    if quantity == "static_compliance":
-        units = map(str, np.diag(data["static_compliance_unit"].values))
-        names = [f"compliance {name}" for name in data["response"].values]
-        return [
-            _scaled(name, values[..., k, k], unit, 1) for k, (name, unit) in enumerate(zip(names, units, strict=True))
-        ]
-    last = str(variable.dims[-1])
-    word, unit = "along" if last == "axis" else "mode", str(variable.attrs.get("units", "1"))
-    characters = variable.coords.get("character")
-    worst = 0 if quantity == "identity" else 1 if quantity == "frf_peak" else -1
-    return [
-        _scaled(
-            f"{word} {name}" + ("" if characters is None else f": {characters.values[k]}"), values[..., k], unit, worst
-        )
-        for k, name in enumerate(data[last].values)
-    ]
-
-
-def _scaled(title: str, values: FloatArray, unit: str, worst: int) -> _Panel:
-    """Compliances per million, so that their numbers are short."""
-    factor = 1e6 if unit.endswith(("/N", "/(N m)")) else 1.0
-    return _Panel(title, factor * values, unit if factor == 1.0 else f"u{unit}", worst)
-
-
 def _kind(data: xarray.Dataset, dims: tuple[str, ...]) -> Any:
     if dims == ("pose",):
         return _points
@@ -180,7 +115,7 @@ def _kind(data: xarray.Dataset, dims: tuple[str, ...]) -> Any:
     return _polar if is_polar else _rectangular
 
 
-def _worst_in_words(data: xarray.Dataset, panel: _Panel) -> str:
+def _worst_in_words(data: xarray.Dataset, panel: Panel) -> str:
     if not panel.worst:
         return ""
     place = dict(zip(data["reason"].dims, panel.worst_place(), strict=True))
@@ -190,7 +125,7 @@ def _worst_in_words(data: xarray.Dataset, panel: _Panel) -> str:
     return f"\n{'largest' if panel.worst > 0 else 'lowest'} {panel.value_text()}\nat {where}"
 
 
-def _polar(figure: Any, axes: Any, data: xarray.Dataset, panel: _Panel) -> None:
+def _polar(figure: Any, axes: Any, data: xarray.Dataset, panel: Panel) -> None:
     names = tuple(map(str, data["reason"].dims))
     first, second = (_axis(data, name) for name in names)
     upright = bool(first.is_radius and second.is_turn)
@@ -203,16 +138,16 @@ def _polar(figure: Any, axes: Any, data: xarray.Dataset, panel: _Panel) -> None:
     axes.tick_params(labelsize=7)
     axes.set_rticks(np.linspace(radius.shown[0], radius.shown[-1], 4)[1:])
     axes.grid(alpha=0.25)
-    axes.set_xlabel(f"radius {radius.label}, round {turn.label}", fontsize=7)
+    figure.supxlabel(f"radius: {radius.label}; angle: {turn.label}", fontsize=9)
 
 
-def _rectangular(figure: Any, axes: Any, data: xarray.Dataset, panel: _Panel) -> None:
+def _rectangular(figure: Any, axes: Any, data: xarray.Dataset, panel: Panel) -> None:
     y, x = (_axis(data, str(name)) for name in data["reason"].dims)
     _contours(figure, axes, x.shown, y.shown, panel)
     _name_axes(axes, x.label, y.label)
 
 
-def _contours(figure: Any, axes: Any, x: FloatArray, y: FloatArray, panel: _Panel) -> None:
+def _contours(figure: Any, axes: Any, x: FloatArray, y: FloatArray, panel: Panel) -> None:
     """Filled and labelled contours of values (y, x), the worst marked, what is unreachable hatched."""
     rows, columns = _thinned(len(y)), _thinned(len(x))
     values = panel.values[np.ix_(rows, columns)]
@@ -241,7 +176,7 @@ def _label(axes: Any, lines: Any) -> None:
             axes.text(x, y, f"{level:.4g}", fontsize=6, ha="center", va="center", path_effects=halo)
 
 
-def _curve(figure: Any, axes: Any, data: xarray.Dataset, panel: _Panel) -> None:
+def _curve(figure: Any, axes: Any, data: xarray.Dataset, panel: Panel) -> None:
     axis, values = _axis(data, str(data["reason"].dims[0])), panel.values
     axes.plot(axis.shown, values, color="C0")
     if panel.worst:
@@ -253,7 +188,7 @@ def _curve(figure: Any, axes: Any, data: xarray.Dataset, panel: _Panel) -> None:
     axes.grid(alpha=0.3)
 
 
-def _points(figure: Any, axes: Any, data: xarray.Dataset, panel: _Panel) -> None:
+def _points(figure: Any, axes: Any, data: xarray.Dataset, panel: Panel) -> None:
     """A list over the first two coordinates of which it has more than one value."""
     along = [_axis(data, str(name)) for name in data.coords if data[name].dims == ("pose",)]
     x, y = ([axis for axis in along if np.ptp(axis.values) > 0.0] + along * 2)[:2]
@@ -283,9 +218,13 @@ def _axis(data: xarray.Dataset, name: str) -> _Axis:
     return _Axis(name, values, factor * values, f"{name} / {unit}" if unit else name)
 
 
-def _fixed(data: xarray.Dataset) -> str:
-    """The coordinates that stay where they are, in words."""
-    return ", ".join(_value(each) for each in data.coords.values() if not each.dims and "units" in each.attrs)
+def _subtitle(data: xarray.Dataset, quantity: str) -> str:
+    """What is shown, and the coordinates that stay where they are."""
+    fixed = [_value(each) for each in data.coords.values() if not each.dims and "units" in each.attrs]
+    what = str(data[quantity].attrs.get("long_name", quantity))
+    if quantity.startswith("frf"):
+        what += f" of {data.attrs['band_low_hz']:g} .. {data.attrs['band_high_hz']:g} Hz"
+    return ", ".join([what, *fixed])
 
 
 def _value(coordinate: xarray.DataArray) -> str:
