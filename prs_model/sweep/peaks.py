@@ -15,7 +15,8 @@ from ..arrays import FloatArray
 
 _FLANKS = np.array([0.0, 0.25, 0.6, 1.0, 2.0])  # half-widths beside a resonance
 _SPREAD = 24  # places over the band besides
-_NARROW = 1e-6  # least relative half-width
+_NARROW = 1e-4  # least relative half-width
+_SAME = 1e-5  # relative distance of places that count as one, as beside repeated frequencies
 
 Magnitudes = Callable[[FloatArray], FloatArray]
 """|h| (m, f, c) of m poses and c curves at omega (m, f) [rad/s]."""
@@ -33,8 +34,12 @@ def places(omega: FloatArray, ratios: FloatArray, band: tuple[float, float]) -> 
 def largest(magnitudes: Magnitudes, omega: FloatArray) -> tuple[FloatArray, FloatArray]:
     """The largest |h| (m, c) and where it is (m, c) [rad/s], sought at ascending omega (m, f) and between them."""
     found = magnitudes(omega)
-    best = np.argmax(found, axis=1)
-    three = np.clip(best[:, None] + np.array([-1, 0, 1])[:, None], 0, omega.shape[1] - 1)
+    best = np.argmax(found, axis=1)[:, None]
+    middle = np.take_along_axis(omega[:, :, None], best, axis=1)
+    below = np.sum(omega[:, :, None] < (1.0 - _SAME) * middle, axis=1, keepdims=True)
+    above = np.sum(omega[:, :, None] > (1.0 + _SAME) * middle, axis=1, keepdims=True)
+    last = omega.shape[1] - 1
+    three = np.concatenate([np.maximum(below - 1, 0), best, np.minimum(last - above + 1, last)], axis=1)
     at = np.take_along_axis(omega[:, :, None], three, axis=1)
     value = np.take_along_axis(found, three, axis=1)
     top = _top(at, value)

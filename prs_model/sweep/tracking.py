@@ -4,6 +4,7 @@ Modes of neighbouring poses are compared by the squared cosine of their vectors 
 smoothly with the pose. Identities start where the sweep is nearest the reference pose and spread along a tree over all
 poses: the spanning tree whose steps have the best overlaps, along the rows of a grid where they are equally good.
 
+A pose where two frequencies are one has arbitrary vectors: the tree passes it by and reaches it last.
 Round a point where two frequencies meet (a conical intersection) no labelling is both smooth and single-valued on a
 grid that steps over the meeting in some rows and resolves it in others: there the tree leaves a seam, at its weakest
 steps. `overlap` says how far each label is to be trusted.
@@ -51,11 +52,15 @@ def follow(poses: Poses, reference: FloatArray, frequencies: FloatArray, vectors
     """
     there = np.asarray(np.isfinite(frequencies).all(axis=1))
     start = _start(poses, reference, there)
-    edges, preference = _grid_edges(poses, start) if poses.is_grid else _list_edges(poses, there)
+    if poses.is_grid:
+        edges, preference = _grid_edges(poses, start, _has_repeated(frequencies))
+    else:
+        edges, preference = _list_edges(poses, there)
     usable = there[edges].all(axis=1)
     edges, preference = edges[usable], preference[usable]
     partners, overlaps = _steps(edges, frequencies, vectors)
-    before, step = _tree(edges, preference, overlaps, start, poses.size)
+    costs = _costs(edges, preference, overlaps, _has_repeated(frequencies))
+    before, step = _tree(edges, costs, start, poses.size)
     place, least, reached = _along(before, step, edges, partners, overlaps, start)
     identity = np.argsort(place, axis=1)[:, :count] + 1
     followed = np.take_along_axis(frequencies, place, axis=1)[:, :count]
@@ -75,20 +80,28 @@ def _start(poses: Poses, reference: FloatArray, there: BoolArray) -> int:
     return int(np.argmin(distance))
 
 
-def _grid_edges(poses: Poses, start: int) -> tuple[IntArray, FloatArray]:
-    """Pairs of neighbours (e, 2), and what each costs: rows of the last axis least, others least near the start."""
+def _grid_edges(poses: Poses, start: int, has_repeated: BoolArray) -> tuple[IntArray, FloatArray]:
+    """Pairs of neighbours (e, 2), and what each costs: rows of the last axis least, others least near the start.
+
+    Where a pose has repeated frequencies, its two neighbours along each axis are a pair too.
+    """
     numbers = np.arange(poses.size).reshape(poses.shape)
-    here = np.unravel_index(start, poses.shape)
-    edges, costs = [np.zeros((0, 2), dtype=np.intp)], [np.zeros(0)]
+    edges = []
     for axis in range(len(poses.shape)):
-        low = np.delete(numbers, -1, axis=axis)
-        high = np.delete(numbers, 0, axis=axis)
-        places = np.unravel_index(low.ravel(), poses.shape)
-        later = range(axis + 1, len(poses.shape))
-        away = sum(np.abs(places[k] - here[k]) / poses.shape[k] for k in later) / max(len(later), 1)
-        edges.append(np.column_stack([low.ravel(), high.ravel()]))
-        costs.append((len(later) + np.broadcast_to(away, low.size)) / (len(poses.shape) + 1))
-    return np.vstack(edges), np.concatenate(costs)
+        row = np.moveaxis(numbers, axis, -1)
+        near = np.column_stack([row[..., :-1].ravel(), row[..., 1:].ravel()])
+        apart = np.column_stack([row[..., :-2].ravel(), row[..., 2:].ravel()])
+        edges += [near, apart[has_repeated[row[..., 1:-1].ravel()]]]
+    costs = [_along_cost(poses, start, k // 2, pairs) for k, pairs in enumerate(edges)]
+    return np.vstack([np.zeros((0, 2), dtype=np.intp), *edges]), np.concatenate([np.zeros(0), *costs])
+
+
+def _along_cost(poses: Poses, start: int, axis: int, pairs: IntArray) -> FloatArray:
+    """Below 1: more for earlier axes, and for those away from the start along later ones."""
+    places, here = np.unravel_index(pairs[:, 0], poses.shape), np.unravel_index(start, poses.shape)
+    later = range(axis + 1, len(poses.shape))
+    away = sum((np.abs(places[k] - here[k]) / poses.shape[k] for k in later), np.zeros(len(pairs)))
+    return np.asarray((len(later) + away / max(len(later), 1)) / (len(poses.shape) + 1))
 
 
 def _list_edges(poses: Poses, there: BoolArray) -> tuple[IntArray, FloatArray]:
@@ -148,13 +161,20 @@ def _assigned(likeness: FloatArray) -> NDArray[np.int16]:
     return np.asarray(partner, dtype=np.int16)
 
 
-def _tree(
-    edges: IntArray, preference: FloatArray, overlaps: FloatArray, start: int, count: int
-) -> tuple[IntArray, IntArray]:
-    """The pose before each (N,), itself at the start, -1 where nothing leads; and the number of the edge there (N,)."""
+def _has_repeated(frequencies: FloatArray) -> BoolArray:
+    """Whether two frequencies of a pose are one (N,)."""
+    return np.asarray((np.diff(frequencies, axis=1) <= _REPEATED * frequencies[:, 1:]).any(axis=1))
+
+
+def _costs(edges: IntArray, preference: FloatArray, overlaps: FloatArray, has_repeated: BoolArray) -> FloatArray:
+    """What a step costs the tree (e,): its overlap in classes, half of them where vectors are arbitrary, then rows."""
     grades = np.round(_CLASSES * (1.0 - np.clip(overlaps.min(axis=1, initial=1.0), 0.0, 1.0)))
-    costs = coo_array((1.0 + grades + preference, edges.T), shape=(count, count))
-    tree = minimum_spanning_tree(csr_array(costs))
+    return np.asarray(1.0 + grades + _CLASSES / 2 * has_repeated[edges].any(axis=1) + preference)
+
+
+def _tree(edges: IntArray, costs: FloatArray, start: int, count: int) -> tuple[IntArray, IntArray]:
+    """The pose before each (N,), itself at the start, -1 where nothing leads; and the number of the edge there (N,)."""
+    tree = minimum_spanning_tree(csr_array(coo_array((costs, edges.T), shape=(count, count))))
     before = np.asarray(breadth_first_order(tree, start, directed=False)[1], dtype=np.intp)
     before = np.where(before < 0, -1, before)
     before[start] = start
