@@ -14,6 +14,7 @@ import numpy as np
 
 from .dataset import to_dataset
 from .identity import identity
+from .lazy import results
 from .plan import Plan, make_plan
 from .poses import Poses
 from .quantities import Block
@@ -87,7 +88,7 @@ def _whole(plan: Plan, pieces: Iterator[tuple[int, Block]], kept: Store | None, 
                 block[name][start : start + len(values)] = values
         if progress is not None:
             progress(done, size)
-    return block if kept is None else kept.gather()
+    return block if kept is None else results(kept)
 
 
 def _spans(size: int, length: int) -> dict[int, tuple[int, int]]:

@@ -45,9 +45,9 @@ def evaluated(journal: Path) -> list[tuple[int, int]]:
     return [(int(start), int(stop)) for start, stop in (line.split() for line in lines)]
 
 
-def run(folder: Path, plan: StandIn) -> None:
+def run(folder: Path, plan: StandIn, shape: tuple[int, ...] = SHAPE) -> None:
     """Evaluate what is unfinished, one piece after another."""
-    with opened(folder, RUN, SHAPE) as store:
+    with opened(folder, RUN, shape) as store:
         store.plan(lambda: {"nodes": np.arange(3.0)})
         for index, span in store.unfinished().items():
             store.write(index, plan.evaluate(*span))

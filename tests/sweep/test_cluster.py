@@ -5,10 +5,12 @@ import signal
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
+import prs_model as prs
 from prs_model.errors import PrsError
 from prs_model.sweep import cluster as clusters
 from prs_model.sweep.store import Block, opened
@@ -62,6 +64,21 @@ def test_a_run_begun_here_is_completed_there(client: distributed.Client, tmp_pat
             store.write(index, block)
         assert_same(store.gather(), results(0, SIZE))
         assert len(evaluated(plan.journal)) == len(store.chunks) - 2
+
+
+def test_a_sweep_on_a_cluster_is_the_same_sweep(client: distributed.Client, tmp_path: Path) -> None:
+    machine = prs.load_machine("hexapod").replace({"bodies.platform.options.mass": 1.1})
+    asked: Any = {"x": np.linspace(-1e-3, 1e-3, 20), "rz": np.linspace(-0.01, 0.01, 25), "n_modes": 3}
+    expected = machine.sweep(**asked)
+    victims = list(client.run(os.getpid).values())[:1]
+
+    def kill(done: int, size: int) -> None:
+        if done > size / 3 and victims:
+            os.kill(victims.pop(), signal.SIGKILL)
+
+    found = machine.sweep(**asked, store=tmp_path / "run", cluster=client, progress=kill)
+    assert not victims
+    assert expected.identical(found)
 
 
 @dataclass(frozen=True)

@@ -13,18 +13,21 @@ from typing import Any
 
 import numpy as np
 import pytest
+import xarray
 
 import prs_model as prs
 from prs_model.errors import PrsError
 from prs_model.sweep import store as stores
 from prs_model.sweep.identity import identity
 from prs_model.sweep.lazy import lazy
+from prs_model.sweep.plan import Plan
 from prs_model.sweep.poses import poses_of
 from prs_model.sweep.request import Request
 from prs_model.sweep.store import Store, opened, piece_length
 from tests.sweep.stand_in import RUN, SHAPE, StandIn, evaluated, results, run, run_killed_before_renaming
 
 SIZE = SHAPE[0] * SHAPE[1]
+FEW = (5,)  # poses, a piece each
 
 
 @pytest.fixture
@@ -53,8 +56,8 @@ def sound_pieces(folder: Path) -> set[tuple[int, int]]:
     return found
 
 
-def gathered(folder: Path) -> stores.Block:
-    with opened(folder, RUN, SHAPE) as store:
+def gathered(folder: Path, shape: tuple[int, ...] = SHAPE) -> stores.Block:
+    with opened(folder, RUN, shape) as store:
         return store.gather()
 
 
@@ -66,7 +69,7 @@ def assert_same(block: stores.Block, expected: stores.Block) -> None:
 
 
 def test_killed_ten_times_at_random_moments_and_resumed(folder: Path, tmp_path: Path) -> None:
-    plan = StandIn(tmp_path / "journal", seconds=0.02)
+    plan = StandIn(tmp_path / "journal", seconds=0.01)
     moments = random.Random(20)
     finished: set[tuple[int, int]] = set()
     for _ in range(10):
@@ -105,28 +108,26 @@ def test_a_damaged_piece_is_computed_again(
     folder: Path, tmp_path: Path, damage: str, caplog: pytest.LogCaptureFixture
 ) -> None:
     plan = StandIn(tmp_path / "journal")
-    run(folder, plan)
+    run(folder, plan, FEW)
     plan.journal.unlink()
-    path = folder / "piece-000007.npz"
+    path = folder / "piece-000003.npz"
     content = path.read_bytes()
     path.write_bytes(
         {
             "cut": content[:-100],
             "empty": b"",
             "flipped": content[:2000] + bytes([content[2000] ^ 1]) + content[2001:],
-            "other": (folder / "piece-000008.npz").read_bytes(),
+            "other": (folder / "piece-000002.npz").read_bytes(),
             "text": b"frequency, 12.3",
         }[damage]
     )
-    with opened(folder, RUN, SHAPE) as store:
-        span = store.chunks[7]
-        with pytest.raises(PrsError, match=r"piece-000007.*(damaged|another).*run the sweep again"):
-            store.gather()
+    with opened(folder, RUN, FEW) as store, pytest.raises(PrsError, match=r"000003.*(damaged|another).*run the sweep"):
+        store.gather()
     with caplog.at_level(logging.WARNING, "prs_model"):
-        run(folder, plan)
-    assert "piece-000007.npz: damaged" in caplog.text
-    assert evaluated(plan.journal) == [span]
-    assert_same(gathered(folder), results(0, SIZE))
+        run(folder, plan, FEW)
+    assert "piece-000003.npz: damaged" in caplog.text
+    assert evaluated(plan.journal) == [(3, 4)]
+    assert_same(gathered(folder, FEW), results(0, 5))
 
 
 def test_no_flipped_bit_goes_unseen(folder: Path, tmp_path: Path) -> None:
@@ -134,8 +135,8 @@ def test_no_flipped_bit_goes_unseen(folder: Path, tmp_path: Path) -> None:
         store.write(0, {"frequency": np.ones((1, 2))})
         path = folder / "piece-000000.npz"
         sound = path.read_bytes()
-        for place in range(len(sound)):
-            path.write_bytes(sound[:place] + bytes([sound[place] ^ 1 << place % 8]) + sound[place + 1 :])
+        for place in range(0, len(sound), 2):
+            path.write_bytes(sound[:place] + bytes([sound[place] ^ 1 << place // 2 % 8]) + sound[place + 1 :])
             if 0 in store.finished():  # a date or an attribute in the archive
                 np.testing.assert_array_equal(store.read(0)["frequency"], 1.0)
 
@@ -165,11 +166,22 @@ def test_nothing_that_would_be_pickled_is_written(folder: Path) -> None:
 
 
 def test_a_folder_of_another_run_is_refused(folder: Path, tmp_path: Path) -> None:
-    run(folder, StandIn(tmp_path / "journal"))
+    run(folder, StandIn(tmp_path / "journal"), FEW)
     other = RUN.replace('"n_modes":6', '"n_modes":8')
     with pytest.raises(PrsError, match=r"run: holds another sweep \(request.n_modes: 8, stored 6\)"):
-        opened(folder, other, SHAPE).__enter__()
-    assert_same(gathered(folder), results(0, SIZE))
+        opened(folder, other, FEW).__enter__()
+    assert_same(gathered(folder, FEW), results(0, 5))
+
+
+def test_pieces_with_other_arrays_are_told(folder: Path) -> None:
+    with opened(folder, RUN, FEW) as store:
+        for index in range(5):
+            store.write(index, results(index, index + 1))
+        block = results(4, 5)
+        del block["vectors"]
+        store.write(4, block)
+        with pytest.raises(PrsError, match=r"piece-000004.npz: holds other arrays than the first"):
+            store.gather()
 
 
 def test_a_folder_with_other_files_is_left_alone(tmp_path: Path) -> None:
@@ -237,12 +249,53 @@ def test_results_are_read_when_they_are_asked_for(folder: Path, tmp_path: Path) 
     run(folder, StandIn(tmp_path / "journal"))
     with opened(folder, RUN, SHAPE) as store:
         arrays = lazy(store)
-        (folder / "piece-000063.npz").unlink()
-        assert arrays["vectors"].shape == (SIZE, 20, 60)
-        frequency = arrays["frequency"].reshape(*SHAPE, 6)
-        np.testing.assert_array_equal(frequency[2, 7].compute(), results(167, 168)["frequency"][0])
-        with pytest.raises(PrsError, match=r"piece-000063\.npz: there is no such piece"):
-            arrays["reason"].compute()
+    (folder / "piece-000063.npz").unlink()
+    frequency = arrays["frequency"].reshape(*SHAPE, 6)
+    np.testing.assert_array_equal(frequency[2, 7].compute(), results(167, 168)["frequency"][0])
+    np.testing.assert_array_equal(arrays["reason"], results(0, SIZE)["reason"])
+    with pytest.raises(PrsError, match=r"piece-000063\.npz: there is no such piece"):
+        arrays["vectors"].compute()
+
+
+def test_large_results_stay_where_they_are(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    machine = prs.load_machine("hexapod")
+    axes = {"z": np.linspace(0.089, 0.091, 3), "x": np.linspace(0.0, 1e-3, 4)}
+    asked: Any = {**axes, "n_modes": 3, "quantities": ("frequency", "static_compliance", "identity")}
+    expected = machine.sweep(**asked)
+    monkeypatch.setattr("prs_model.sweep.lazy.IN_MEMORY", 0)
+    found = machine.sweep(**asked, store=tmp_path / "run")
+    assert found["static_compliance"].chunks is not None
+    found.to_netcdf(tmp_path / "map.nc", engine="h5netcdf")
+    with xarray.open_dataset(tmp_path / "map.nc", engine="h5netcdf") as written:
+        xarray.testing.assert_equal(written, expected)
+
+
+def test_an_interrupted_sweep_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    machine = prs.load_machine("hexapod")
+    asked: Any = {"x": np.linspace(-1e-3, 1e-3, 20), "rz": np.linspace(-0.01, 0.01, 25), "n_modes": 3}
+    expected = machine.sweep(**asked)
+    begun: list[int] = []
+    evaluate = Plan.evaluate
+
+    def journal(plan: Plan, start: int, stop: int) -> stores.Block:
+        begun.append(start)
+        return evaluate(plan, start, stop)
+
+    def interrupt(done: int, size: int) -> None:
+        if done > size / 3:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(Plan, "evaluate", journal)
+    with pytest.raises(KeyboardInterrupt):
+        machine.sweep(**asked, store=tmp_path, progress=interrupt)
+    kept = {int(path.stem.removeprefix("piece-")) for path in tmp_path.glob("piece-*")}
+    begun.clear()
+    monkeypatch.setattr("prs_model.sweep.run.make_plan", None)  # it was kept
+    found = machine.sweep(**asked, store=tmp_path)
+    xarray.testing.assert_identical(found, expected)
+    length = json.loads((tmp_path / "run.json").read_text())["poses_per_piece"]
+    assert len(kept) > 10
+    assert not kept & {start // length for start in begun}
 
 
 def test_a_run_is_known_by_everything_that_decides_it() -> None:
