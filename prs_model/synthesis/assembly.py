@@ -142,26 +142,30 @@ def joined(
     for spring in springs:
         relative, law = ends.relative_displacement(spring), spring.law
         motions.append(SpringMotion(spring.joint, spring.interface, relative.blocks, relative.motions, law.stiffness))
-        _stiffen(stiffness, motions[-1])
         if law.rigid_wrenches.shape[-1]:
             rows, size_of_rows = _rigid_rows(law.rigid_wrenches, relative, stiffness.shape)
             constraints.append(rows)
             sizes.append(size_of_rows)
+    _stiffen(stiffness, motions)
     return tuple(motions), np.concatenate(constraints, axis=-2), np.concatenate(sizes, axis=-1)
 
 
-def _stiffen(stiffness: FloatArray, spring: SpringMotion) -> None:
-    """K + D^T k D, by the bodies that the spring joins."""
-    if not spring.stiffness.any():
-        return
-    ends = list(zip(spring.blocks, spring.motions, strict=True))
-    for place, (block, motion) in enumerate(ends):
-        force = _transposed(motion) @ spring.stiffness
-        stiffness[..., block, block] += force @ motion
-        for other, other_motion in ends[place + 1 :]:
-            coupling = force @ other_motion
-            stiffness[..., block, other] += coupling
-            stiffness[..., other, block] += _transposed(coupling)
+def _stiffen(stiffness: FloatArray, springs: Sequence[SpringMotion]) -> None:
+    """K + sum D^T k D. Summed by pairs of bodies, so that the large matrices are written once."""
+    sums: dict[tuple[int, int, int, int], FloatArray] = {}
+    for spring in springs:
+        if not spring.stiffness.any():
+            continue
+        ends = list(zip(spring.blocks, spring.motions, strict=True))
+        for place, (block, motion) in enumerate(ends):
+            force = _transposed(motion) @ spring.stiffness
+            for other, other_motion in ends[place:]:
+                pair = (block.start, block.stop, other.start, other.stop)
+                sums[pair] = sums.get(pair, 0.0) + force @ other_motion
+    for (top, bottom, left, right), coupling in sums.items():
+        stiffness[..., top:bottom, left:right] += coupling
+        if left != top:
+            stiffness[..., left:right, top:bottom] += _transposed(coupling)
 
 
 def _rigid_rows(

@@ -95,5 +95,7 @@ def _elements(
 
 def _stacked(motion: SpringMotion, count: int) -> SpringMotion:
     """With an entry for every configuration, also where all are the same."""
-    motions = tuple(np.broadcast_to(each, (count, *each.shape[-2:])) for each in motion.motions)
+    motions = tuple(
+        each if len(each) == count else np.broadcast_to(each, (count, *each.shape[-2:])) for each in motion.motions
+    )
     return replace(motion, motions=motions, stiffness=np.broadcast_to(motion.stiffness, (count, 6, 6)))

@@ -8,6 +8,7 @@ import pytest
 from scipy.linalg import eigh
 
 import prs_model as prs
+from prs_model.synthesis import assemble_many
 
 
 def median_time(action: Callable[[], object], repeats: int = 30) -> float:
@@ -25,10 +26,13 @@ def test_time_per_pose(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     machine = prs.load_machine(name)
     configuration = machine.configuration()
     system = machine.assemble(configuration)
+    together = machine.kinematics.solve_batch(np.tile(list(machine.reference_pose.values()), (128, 1)))
+    several = (machine.description, machine.parts, machine.joints, together)
     plain = median_time(lambda: eigh(system.stiffness, system.mass))
     rows = {
         "kinematics": median_time(machine.configuration),
         "assembly": median_time(lambda: machine.assemble(configuration)),
+        "assembly of 128": median_time(lambda: assemble_many(*several)) / 128,
         "6 modes": median_time(lambda: system.modes(6)),
         "scipy eigh, all": plain,
         "scipy eigh, 6": median_time(lambda: eigh(system.stiffness, system.mass, subset_by_index=[0, 5])),

@@ -7,6 +7,7 @@ import pytest
 from prs_model.description.schema import BallScrew, ElasticLaw
 from prs_model.errors import PrsError
 from prs_model.joints import (
+    JointCompliance,
     along_axes,
     ball_screw_compliance,
     from_stiffness_matrix,
@@ -80,6 +81,33 @@ def test_the_printed_spherical_joint_resists_rotation() -> None:
     padded = np.diag([1e-9, 1.2e-9, 2e-9, 3e-7, 4e-7, 0.0])
     np.testing.assert_allclose(printed, np.linalg.inv(sum(x @ padded @ x.T for x in actions)), rtol=1e-9, atol=1e-3)
     assert np.linalg.matrix_rank(printed) == 6
+
+
+def hinges_at(angles: np.ndarray) -> tuple[list[JointCompliance], list[np.ndarray]]:
+    """Two hinges about axes of one plane, the second turned by each of the angles [rad] against the first."""
+    across, elastic = pin.exp3(np.array([0, np.pi / 2, 0])), along_axes(BEARING)
+    turned = [pin.SE3(pin.exp3(np.array([0, angle, 0])), np.zeros(3)).toActionMatrix() for angle in angles]
+    lying = np.asarray(pin.SE3(across, np.zeros(3)).toActionMatrix())
+    return [elastic, along_axes({**BEARING, 0: 0.0})], [lying, np.array(turned)]
+
+
+def test_many_chains_at_once_are_the_same_as_one_by_one() -> None:
+    angles = np.array([0.0, 0.3, np.pi / 2 - 1e-5])
+    joints, (first, turned) = hinges_at(angles)
+    together = series(joints, [first, turned])
+    assert together.stiffness.shape == (3, 6, 6)
+    for i, each in enumerate(turned):
+        alone = series(joints, [first, each])
+        assert together.stiffness[i] == pytest.approx(alone.stiffness, rel=1e-12, abs=1e-12 * alone.stiffness.max())
+        assert together.wrenches[i] == pytest.approx(alone.wrenches, abs=1e-12)
+        assert np.abs(together.wrenches[i].T @ np.column_stack([first[:, 5], each[:, 5]])).max() < 1e-14
+
+
+def test_chains_of_which_one_is_freer_are_not_made_together() -> None:
+    """With both axes in one line a direction is free that is held elsewhere."""
+    joints, actions = hinges_at(np.array([0.3, np.pi / 2]))
+    with pytest.raises(PrsError, match=r"different numbers of directions free or rigid \(1 and 2\)"):
+        series(joints, actions)
 
 
 def test_series_of_two_springs_halves_the_stiffness() -> None:

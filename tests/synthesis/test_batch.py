@@ -3,11 +3,14 @@
 from pathlib import Path
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 import prs_model as prs
+from prs_model.joints import ElasticJoint, along_axes
+from prs_model.joints.springs import ElasticStage, Side
 from prs_model.kinematics import Configurations
-from prs_model.synthesis import Systems, assemble_many
+from prs_model.synthesis import Systems, assemble, assemble_many
 from prs_model.synthesis.elimination import independent_coordinates
 from tests.verification.gantry import TRAVEL, gantry
 
@@ -19,20 +22,20 @@ def some_poses(machine: prs.Machine, count: int) -> np.ndarray:
     return low + (high - low) * np.random.default_rng(7).random((count, len(low)))
 
 
-def together(machine: prs.Machine, configurations: Configurations) -> Systems:
-    return assemble_many(machine.description, machine.parts, machine.joints, configurations)
+def together(machine: prs.Machine, configurations: Configurations, *more: ElasticJoint) -> Systems:
+    return assemble_many(machine.description, machine.parts, (*machine.joints, *more), configurations)
 
 
 def assert_same(found: np.ndarray, expected: np.ndarray) -> None:
     assert found == pytest.approx(expected, rel=1e-12, abs=1e-12 * np.abs(expected).max(initial=0.0))
 
 
-def assert_twins(machine: prs.Machine, count: int = 4) -> None:
+def assert_twins(machine: prs.Machine, *more: ElasticJoint, count: int = 4) -> None:
     """Matrices, output and springs of every configuration, after the rigid directions are eliminated."""
     configurations = machine.kinematics.solve_batch(some_poses(machine, count))
-    systems = together(machine, configurations)
+    systems = together(machine, configurations, *more)
     for i in range(count):
-        one = machine.assemble(configurations[i])
+        one = assemble(machine.description, machine.parts, (*machine.joints, *more), configurations[i])
         expansion, _ = independent_coordinates(systems.constraints[i], systems.constraint_sizes[i])
         expansion = expansion[:, np.any(expansion.T @ (systems.mass[i] + systems.stiffness[i]) != 0.0, axis=1)]
         assert_same(expansion, one.expansion)
@@ -64,6 +67,16 @@ def test_machines_are_the_same_together_and_one_by_one(name: str, changes: dict[
 def test_travelling_contacts_and_partly_rigid_joints_too(tmp_path: Path, method: str) -> None:
     travelling = {"reduction.coupling": "averaged", "bodies.column.interfaces.rail.travel.method": method}
     assert_twins(gantry(tmp_path, travel=TRAVEL).replace({**HINGE, **travelling}))
+
+
+def test_both_ends_of_a_joint_on_one_body_and_one_on_the_ground_too() -> None:
+    """A rigid link inside the rigid platform: its rows are round-off, and eliminate nothing."""
+    law = along_axes(dict.fromkeys(range(6), 0.0))
+    stage = ElasticStage("platform", (Side(None, pin.SE3.Identity(), law),), None, None, None)
+    assert_twins(
+        prs.load_machine("hexapod"),
+        ElasticJoint("link", ("platform.joint_1", "platform.joint_4"), (stage,), False, False),
+    )
 
 
 def test_a_pose_out_of_reach_is_told_as_it_is_alone() -> None:
