@@ -30,15 +30,20 @@ class _Bar:
     """Drawn over itself on a terminal, a line now and then elsewhere."""
 
     def __init__(self, unit: str):
-        self.unit, self.start, self.last, self.open = unit, perf_counter(), 0.0, False
+        self.unit, self.last, self.open = unit, 0.0, False
+        self.start = self.first = perf_counter()
+        self.already: int | None = None
         self.is_terminal = sys.stderr.isatty()
 
     def __call__(self, done: int, total: int) -> None:
-        passed = perf_counter() - self.start
+        now = perf_counter()
+        passed = now - self.start
+        if self.already is None:  # what comes before the first pose is no part of the rate
+            self.first, self.already = now, done
         if passed < _AT_ONCE or passed - self.last < (_EVERY if self.is_terminal else _EVERY_LINE):
             return
         self.last, self.open = passed, True
-        text = line(done, total, passed, self.unit)
+        text = line(done, total, (done - self.already) / max(now - self.first, 1e-9), self.unit)
         print(f"\r{text}\x1b[K" if self.is_terminal else text, end="" if self.is_terminal else "\n", file=sys.stderr)
         sys.stderr.flush()
 
@@ -48,13 +53,12 @@ class _Bar:
             print("\r\x1b[K", end="", file=sys.stderr, flush=True)
 
 
-def line(done: int, total: int, seconds: float, unit: str) -> str:
-    """Such as ``[#####     ]  50 %  1,200 of 2,400 poses  600 a second  2 s left``."""
+def line(done: int, total: int, rate: float, unit: str) -> str:
+    """Such as ``[#####     ]  50%  1,200 of 2,400 poses  600 a second  2 s left``, from a rate per second."""
     share = done / max(total, 1)
-    rate = done / max(seconds, 1e-9)
-    left = _duration((total - done) / rate) if done else "?"
+    speed = f"{rate:,.0f} a second  {_duration((total - done) / rate)} left" if rate > 0.0 else "started"
     filled = "#" * round(_WIDTH * share)
-    return f"[{filled:<{_WIDTH}}] {share:4.0%}  {done:,} of {total:,} {unit}  {rate:,.0f} a second  {left} left"
+    return f"[{filled:<{_WIDTH}}] {share:4.0%}  {done:,} of {total:,} {unit}  {speed}"
 
 
 def _duration(seconds: float) -> str:

@@ -83,6 +83,6 @@ def test_wrong_arguments_are_told_before_the_work(tmp_path, monkeypatch, capsys,
 
 
 def test_the_bar_says_rate_and_time_left():
-    assert line(1200, 4800, 2.0, "poses").endswith("25%  1,200 of 4,800 poses  600 a second  6 s left")
-    assert line(0, 10, 1.0, "poses").endswith("? left")
+    assert line(1200, 4800, 600.0, "poses").endswith("25%  1,200 of 4,800 poses  600 a second  6 s left")
     assert line(1, 7201, 1.0, "poses").endswith("2 h 00 min left")
+    assert line(8, 10, 0.0, "poses").endswith("8 of 10 poses  started")
