@@ -44,9 +44,6 @@ def at_pose(machine: Machine, configuration: Configuration, request: Request) ->
     _add_energies(block, modes, request, labelled)
     if positive_definite_pencil(system.mass, system.stiffness)[0] == 0.0:
         _add_compliances(block, modes, request)
-    if with_peaks:
-        peaks, frequencies = _peaks(modes, request)
-        block["frf_peak"][0], block["frf_peak_frequency"][0] = peaks, frequencies
     if "identity" in request.quantities:
         some = slice(request.n_modes + _EXTRA)
         block["vectors"] = _with_mass(modes)[None, :, some]
@@ -86,6 +83,8 @@ def _add_compliances(block: Block, modes: Modes, request: Request) -> None:
         block["static_compliance"][0] = modes.static_compliance()
     if "flexibility_share" in request.quantities:
         block["flexibility_share"][0] = modes.flexibility_shares()[: request.n_modes]
+    if "frf_peak" in request.quantities:
+        block["frf_peak"][0], block["frf_peak_frequency"][0] = _peaks(modes, request)
 
 
 def _peaks(modes: Modes, request: Request) -> tuple[FloatArray, FloatArray]:
