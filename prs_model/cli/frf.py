@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,20 +10,20 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..errors import PrsError
-from ..readable import figure
-from . import damping_argument, machine_argument, pose_argument
-from .table import table
+from . import damping_argument, frf_text, machine_argument, pose_argument
 from .values import positive
 
 if TYPE_CHECKING:
+    from ..description.schema import Damping
     from ..modes import Modes
     from ..response import FrequencyResponse
     from ..synthesis import System
 
 NAME = "frf"
-HELP = "frequency responses, static compliance and weak modes at one pose"
+HELP = "frequency responses, static compliance, where it comes from, and weak modes at one pose"
 
-_LINES = 1000
+show = frf_text.show
+
 _MOST = 1_000_000
 
 
@@ -34,10 +33,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--range",
         metavar="FIRST:LAST:COUNT",
-        help="frequencies in Hz, such as 10:500:2000; default: from a tenth of the first mode to beyond the eighth",
+        help="frequencies in Hz, such as 10:500:2000; default: from a tenth of the first mode to beyond the eighth, "
+        "closer round each mode",
     )
-    parser.add_argument("--from", dest="at", metavar="NODE", help="body.node of the force; default: the output")
-    parser.add_argument("--to", metavar="NODE", help="body.node of the response; default: the output")
+    node = "body.node, or output, which is the default"
+    parser.add_argument("--from", dest="at", metavar="NODE", help=f"where the force acts: {node}")
+    parser.add_argument("--to", metavar="NODE", help=f"where the response is read: {node}")
     parser.add_argument(
         "--direction",
         nargs="+",
@@ -70,6 +71,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> dict[str, Any]:
     """Solve, and write where asked."""
+    from ..response.damping import damping_of, is_proportional
     from ..response.files import check_file
     from ..response.quantity import pair_of
 
@@ -81,116 +83,151 @@ def run(options: argparse.Namespace) -> dict[str, Any]:
     machine = machine_argument.changed(options)
     configuration = pose_argument.configuration_at(machine, options)
     system = machine.assemble(configuration)
-    modes = system.modes(system.size if options.count is None else options.count)
-    frequencies = _default_range(system) if given is None else given
+    model, every = damping_of(system, damping), system.modes(system.size)
+    modes = every if options.count is None else system.modes(options.count)
+    frequencies = _default_range(every, model) if given is None else given
+    direct = options.direct or (len(modes.frequencies) < len(every.frequencies) and not is_proportional(model))
     ends = {"to": options.to, "at": options.at, "quantity": options.quantity}
-    model = system if options.direct else modes
-    response = model.frequency_response(frequencies, damping, **ends)
-    outcome = pose_argument.where(machine, configuration)
+    response = (system if direct else modes).frequency_response(frequencies, model, **ends)
+    outcome = {
+        **pose_argument.where(machine, configuration),
+        **_what(response, model),
+        "damping": damping if damping is not None else model.model_dump(mode="json", exclude_none=True),
+        "method": "direct" if direct else "modal",
+        "modes": None if direct else len(modes.frequencies),
+        "frequencies_hz": response.frequencies.tolist(),
+        "curves": [_curve(response, pair, _endless(every, model, response, pair)) for pair in pairs],
+        **_static(system, every, response, pairs),
+        "files": [str(file) for file in options.output],
+    }
+    title = f"{machine.description.file.title or machine.name}\n{frf_text.caption(outcome)}"
     for file in options.output:
-        response.save(file, pairs, f"{machine.description.file.title or machine.name}\n{_what(response)}")
+        response.save(file, pairs, title)
+    return outcome
+
+
+def _what(response: FrequencyResponse, damping: Damping) -> dict[str, Any]:
+    from ..response.damping import in_words
+
     return {
-        **outcome,
         "quantity": response.quantity,
         "to": response.to,
         "from": response.at,
-        "damping": damping if damping is not None else system.damping_model.model_dump(mode="json", exclude_none=True),
-        "method": "direct" if options.direct else "modal",
-        "modes": None if options.direct else len(modes.frequencies),
-        "frequencies_hz": response.frequencies.tolist(),
-        "curves": [_curve(response, pair) for pair in pairs],
-        **_static(system, _up_to(modes, float(response.frequencies.max())), options),
-        "files": [str(file) for file in options.output],
+        "damping_in_words": in_words(damping),
     }
 
 
-def show(outcome: dict[str, Any]) -> str:
-    """A table of the largest responses under a line that says where, then the weak modes."""
-    low, high = min(outcome["frequencies_hz"]), max(outcome["frequencies_hz"])
-    way = f"{outcome['modes']} modes" if outcome["method"] == "modal" else "solved directly"
-    what = f"{outcome['quantity']} at {outcome['to']} by a force at {outcome['from']}"
-    lines = [f"{pose_argument.heading(outcome)}: {what}, {low:g} .. {high:g} Hz ({way})", ""]
-    rows = [("response/force", "largest", "at/Hz", "unit")]
-    for curve in outcome["curves"]:
-        rows.append((_name(curve), f"{curve['largest']:.4g}", f"{curve['largest_at_hz']:.2f}", curve["unit"]))
-    lines.append(table(rows))
-    if outcome["static_compliance"] is None:
-        lines += ["", "no static compliance: the machine can move without straining anything"]
-    else:
-        lines += ["", "at rest:", table(_static_rows(outcome))]
-    lines += ["", *outcome["weak_modes"]] if outcome["weak_modes"] else []
-    return "\n".join([*lines, *(f"written to {file}" for file in outcome["files"])])
+def _curve(response: FrequencyResponse, pair: str, endless: float | None) -> dict[str, Any]:
+    """One entry, its largest magnitude, and its least real part, by which regenerative chatter is judged.
 
-
-def _what(response: FrequencyResponse) -> str:
-    return f"{response.quantity} at {response.to} by a force at {response.at}"
-
-
-def _curve(response: FrequencyResponse, pair: str) -> dict[str, Any]:
+    Without damping the magnitude has no end: `endless` is then the frequency [Hz] of the mode.
+    """
     values = response.curve(pair)
-    largest = int(np.argmax(np.abs(values)))
+    largest, least = int(np.argmax(np.abs(values))), int(np.argmin(values.real))
     row, column = pair.split("/")
+    finite = endless is None
     return {
         "response": row,
         "excitation": column,
         "unit": response.unit(pair),
         "real": values.real.tolist(),
         "imag": values.imag.tolist(),
-        "largest": float(np.abs(values[largest])),
-        "largest_at_hz": float(response.frequencies[largest]),
+        "largest": float(np.abs(values[largest])) if finite else None,
+        "largest_at_hz": float(response.frequencies[largest]) if finite else endless,
+        "least_real": float(values.real[least]) if finite else None,
+        "least_real_at_hz": float(response.frequencies[least]) if finite else endless,
     }
 
 
-def _static(system: System, modes: Modes, options: argparse.Namespace) -> dict[str, Any]:
-    """Compliance between the nodes, and the weak ones of the modes where both are the output; none if it is free."""
-    if system.modes(1).is_rigid.any():
-        return {"static_compliance": None, "weak_modes": []}
-    weak = modes.weak_modes() if options.to is None and options.at is None else ()
-    compliance = system.static_compliance(options.to, options.at)
-    return {"static_compliance": compliance.tolist(), "weak_modes": [str(mode) for mode in weak]}
+def _endless(modes: Modes, damping: Damping, response: FrequencyResponse, pair: str) -> float | None:
+    """The frequency [Hz] of the undamped mode with most part in a response, of those in its range; None without."""
+    from ..response.modal_equations import damping_ratios
+    from ..response.points import point
+    from ..response.quantity import DIRECTIONS
+
+    low, high = response.frequencies.min(), response.frequencies.max()
+    inside = (modes.frequencies >= low) & (modes.frequencies <= high)
+    undamped = inside & (damping_ratios(modes, damping) == 0.0)
+    row, column = (DIRECTIONS.index(each) for each in pair.split("/"))
+    motions = [point(modes.system, name).motion @ modes.shapes for name in (response.to, response.at)]
+    part = np.abs(motions[0][row] * motions[1][column])
+    moved = undamped & (part > _NONE * part.max())
+    return float(modes.frequencies[np.argmax(np.where(moved, part, 0.0))]) if moved.any() else None
 
 
-def _up_to(modes: Modes, frequency: float) -> Modes:
-    """The modes up to a frequency, at least one: those far above are the node's own surroundings giving way."""
-    count = max(1, int(np.sum(modes.frequencies <= frequency)))
-    return replace(modes, eigenvalues=modes.eigenvalues[:count], shapes=modes.shapes[:, :count])
+_NONE = 1e-12  # of the largest part of a mode in a response: round-off
 
 
-def _static_rows(outcome: dict[str, Any]) -> list[tuple[str, ...]]:
-    from ..response.quantity import DIRECTIONS, unit
+def _static(system: System, modes: Modes, response: FrequencyResponse, pairs: list[str]) -> dict[str, Any]:
+    """Compliance between the nodes; where it comes from and its weak modes, where they are one; none if it is free.
 
-    rows: list[tuple[str, ...]] = [("response/force", "compliance", "unit")]
-    for curve in outcome["curves"]:
-        row, column = curve["response"], curve["excitation"]
-        value = outcome["static_compliance"][DIRECTIONS.index(row)][DIRECTIONS.index(column)]
-        stiffness = f"{figure(1e-6 / value)} N/um" if row == column and row in "uvw" and value > 0.0 else ""
-        rows.append((_name(curve), f"{value:.4g}", f"{unit(row, column)}", stiffness))
-    return [rows[0] + ("stiffness",), *rows[1:]]
+    Of weak modes those up to the highest frequency: far above them are the node's own surroundings giving way.
+    """
+    from ..response.quantity import DIRECTIONS
+
+    nothing: dict[str, Any] = {
+        "static_compliance": None,
+        "static_energy": {},
+        "static_energy_by_kind": {},
+        "weak_modes": [],
+    }
+    if modes.is_rigid.any():
+        return nothing
+    compliance = system.static_compliance(response.to, response.at).tolist()
+    if response.to != response.at:
+        return {**nothing, "static_compliance": compliance}
+    energy = system.static_energy(response.at)
+    asked = [row for row, column in (pair.split("/") for pair in pairs) if row == column]
+    shown = system.modes(max(1, int(np.sum(modes.frequencies <= response.frequencies.max()))))
+    return {
+        "static_compliance": compliance,
+        "static_energy": {
+            each: {name: float(share[DIRECTIONS.index(each)]) for name, share in energy.items()} for each in asked
+        },
+        "static_energy_by_kind": {each: _by_kind(system, energy, DIRECTIONS.index(each)) for each in asked},
+        "weak_modes": [str(mode) for mode in shown.weak_modes(response.at) if mode.direction in asked],
+    }
 
 
-def _name(curve: dict[str, Any]) -> str:
-    row, column = curve["response"], curve["excitation"]
-    return row if row == column else f"{row}/{column}"
+def _by_kind(system: System, energy: dict[str, FloatArray], axis: int) -> dict[str, float]:
+    from ..modes import shares_by_group
+
+    return shares_by_group({name: float(share[axis]) for name, share in energy.items()}, system.stems)
 
 
 def _range(text: str) -> FloatArray:
     """Frequencies (f,) [Hz] of ``first:last:count``. Raises PrsError."""
     pieces = text.split(":")
+    if len(pieces) != 3:
+        raise _wrong_range(text, f"has {len(pieces)} part{'s' if len(pieces) > 1 else ''}, not three")
+    first, last = (_frequency(text, *each) for each in zip(("first", "last"), pieces[:2], strict=True))
+    if last <= first:
+        raise _wrong_range(text, f"the last, {last:g} Hz, is not above the first, {first:g} Hz")
+    if not pieces[2].strip().isdecimal() or not 2 <= int(pieces[2]) <= _MOST:
+        raise _wrong_range(text, f"the count is '{pieces[2]}', not a whole number from 2 to {_MOST}")
+    return np.linspace(first, last, int(pieces[2]))
+
+
+def _frequency(text: str, which: str, piece: str) -> float:
     try:
-        first, last, count = float(pieces[0]), float(pieces[1]), int(pieces[2])
-    except (ValueError, IndexError):
-        first, last, count = 0.0, 0.0, 0
-    if len(pieces) != 3 or not 0.0 < first < last < np.inf or not 2 <= count <= _MOST:
-        raise PrsError(
-            f"--range: found '{text}', expected first:last:count in Hz, such as 10:500:2000, the first above zero and "
-            "below the last"
-        )
-    return np.linspace(first, last, count)
+        value = float(piece)
+    except ValueError:
+        value = np.nan
+    if not 0.0 < value < np.inf:
+        raise _wrong_range(text, f"the {which} is '{piece}', not a frequency above zero")
+    return value
 
 
-def _default_range(system: System) -> FloatArray:
-    frequencies = system.modes(8).frequencies
-    elastic = frequencies[frequencies > 0.0]
-    if not elastic.size:
-        raise PrsError("--range: the first modes are all at 0 Hz; say which frequencies, such as 10:500:2000")
-    return np.linspace(0.1 * elastic[0], 1.25 * elastic[-1], _LINES)
+def _wrong_range(text: str, what: str) -> PrsError:
+    return PrsError(f"--range: found '{text}', expected first:last:count in Hz, such as 10:500:2000; {what}")
+
+
+def _default_range(modes: Modes, damping: Damping) -> FloatArray:
+    from ..response.band import band
+    from ..response.modal_equations import damping_ratios
+
+    count = max(1, 8 - int(modes.is_rigid.sum()))
+    frequencies = band(modes, damping_ratios(modes, damping), count)
+    if not frequencies.size:
+        raise PrsError("--range: all modes are at 0 Hz; say which frequencies, such as 10:500:2000")
+    return frequencies

@@ -104,8 +104,8 @@ class _Draft:
         """A key must be there, or be one that the section may have, or carry a whole new entry of the user's."""
         done, step = here[:-1], str(here[-1])
         fields = known_fields(MachineFile, done)
-        options = "options" in done
-        new = is_free(MachineFile, done) and (options or (here == place and isinstance(value, Mapping)))
+        checked = "options" in done or done == ("damping", "joints")  # by the reducer, and against the names of joints
+        new = is_free(MachineFile, done) and (checked or (here == place and isinstance(value, Mapping)))
         if isinstance(entries, Mapping) and (step in entries or step in fields or new):
             return
         written = entries if isinstance(entries, Mapping) else ()

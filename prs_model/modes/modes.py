@@ -121,6 +121,16 @@ class Modes:
 
         return of_modes(self, frequencies_hz, damping, to, at, quantity, static_correction)
 
+    def damping_ratios(self, damping: DampingLike = None) -> FloatArray:
+        """(k,): of each mode under a damping as in `frf`; where joints damp, of the complex mode it becomes.
+
+        nan for rigid-body modes, and for modes that damping keeps from oscillating.
+        """
+        from ..response.complex_modes import ratios_of
+        from ..response.damping import damping_of
+
+        return ratios_of(self, damping_of(self.system, damping))
+
     def static_compliance(self, to: str | None = None, at: str | None = None) -> FloatArray:
         """(6, 6) of the system, exact whatever the number of modes; see System.static_compliance."""
         return self.system.static_compliance(to, at)

@@ -56,10 +56,10 @@ def draw_modes(modes: Modes, path: Path, title: str = "") -> None:
         _draw_scale(axes, low, high)
         _set_view(axes, low, high)
         words = f"{character.group} {character.motion}; tool {character.output}"
-        axes.set_title(f"mode {k + 1}: {modes.frequencies[k]:.1f} Hz\n{words}", fontsize=9)
+        axes.set_title(f"mode {k + 1}: {modes.frequencies[k]:.1f} Hz\n{words}", fontsize=9, parse_math=False)
     bar = figure.colorbar(plt.scale, ax=figure.axes, orientation="horizontal", shrink=0.3, aspect=40, pad=0.01)
     bar.set_label("displacement / largest displacement of the mode", fontsize=8)
-    figure.suptitle(title)
+    figure.suptitle(title, parse_math=False)
     write_figure(figure, path)
 
 

@@ -7,16 +7,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.linalg import eig
+from scipy.optimize import linear_sum_assignment
 
 from ..arrays import FloatArray
-from .damping import Damping
+from .damping import Damping, is_proportional, modal_ratios
 from .modal_equations import ModalEquations, modal_equations
 from .quantity import ComplexArray
 
 if TYPE_CHECKING:
+    from ..modes import Modes
     from ..synthesis import System
 
 _ROUND_OFF = 1e-12  # of a damping ratio
+_ALIKE = 0.5  # of a complex mode's size: it is the real mode's, turned by damping
 _STILL = 1e-6  # of the first elastic rate: what is slower is rigid motion and its round-off
 
 
@@ -71,6 +74,23 @@ def complex_modes(system: System, count: int, damping: Damping) -> ComplexModes:
     return ComplexModes(
         system, poles[chosen], equations.shapes @ _normalised(vectors[: len(equations.eigenvalues), chosen])
     )
+
+
+def ratios_of(modes: Modes, damping: Damping) -> FloatArray:
+    """xi (k,) of real modes: where joints damp, of the complex modes nearest in the M inner product, which are theirs.
+
+    nan for rigid-body modes, and for modes that damping keeps from oscillating.
+    """
+    if is_proportional(damping):
+        return modal_ratios(damping, modes.eigenvalues)
+    damped = complex_modes(modes.system, modes.system.size, damping)
+    likeness = np.abs(modes.shapes.T @ modes.system.mass @ damped.shapes)
+    likeness[modes.is_rigid] = 0.0
+    ratios = np.full(len(modes.eigenvalues), np.nan)
+    for mode, partner in zip(*linear_sum_assignment(likeness, maximize=True), strict=True):
+        if likeness[mode, partner] > _ALIKE:
+            ratios[mode] = damped.damping_ratios[partner]
+    return ratios
 
 
 def _companion(equations: ModalEquations) -> FloatArray | ComplexArray:

@@ -104,6 +104,19 @@ def is_proportional(damping: Damping) -> bool:
     return not any(each.viscous or each.loss_factor for each in damping.joints.values())
 
 
+def in_words(damping: Damping) -> str:
+    """Such as ``damping 2 %`` or ``damping 1, 3 %; joints R, S damp``."""
+    said = []
+    if damping.modal is not None and np.any(damping.modal):
+        said.append(f"damping {', '.join(f'{100.0 * each:g}' for each in np.atleast_1d(damping.modal))} %")
+    if damping.rayleigh is not None:
+        said.append(f"damping alpha {damping.rayleigh.alpha:g} 1/s, beta {damping.rayleigh.beta:g} s")
+    joints = [name for name, each in damping.joints.items() if each.viscous or each.loss_factor]
+    if joints:
+        said.append(f"joint{'s' if len(joints) > 1 else ''} {', '.join(joints)} damp{'' if len(joints) > 1 else 's'}")
+    return "; ".join(said) or "no damping"
+
+
 def _joint_sum(system: System, factors: Mapping[str, float], shapes: FloatArray | None) -> FloatArray:
     size = system.size if shapes is None else shapes.shape[1]
     total = np.zeros((size, size))

@@ -9,11 +9,15 @@ import numpy as np
 import pinocchio as pin
 
 from ..arrays import FloatArray
-from ..errors import PrsError
+from ..errors import PrsError, UnknownNameError
 from ..plugins import unknown
 
 if TYPE_CHECKING:
     from ..synthesis import System
+
+
+OUTPUT = "output"
+"""The name of the end-reference point."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,19 +32,19 @@ class Point:
 
 
 def point(system: System, name: str | None = None) -> Point:
-    """The end-reference point, or a node ``body.node`` such as ``slider_1.hinge``.
+    """The end-reference point (``output``, or None), or a node ``body.node`` such as ``slider_1.hinge``.
 
     All nodes are read in the axes u, v, w of the output frame, so that a direction means the same everywhere. An
     interface with a node for each of its members is read as their mean.
     Raises UnknownNameError with the known bodies or nodes, PrsError for what is no such name.
     """
-    if name is None:
-        return Point("output", system.output)
+    if name is None or name == OUTPUT:
+        return Point(OUTPUT, system.output)
     body, _, node = str(name).partition(".")
-    if not node:
-        raise PrsError(f"node: found '{name}', expected body.node, such as {_example(system)}")
     if body not in system.elements:
-        raise unknown("body", body, list(system.elements))
+        raise _unknown_body(system, body)
+    if not node:
+        raise PrsError(f"node: found '{name}', expected body.node, one of {', '.join(_nodes(system, body))}")
     ends = system.ends
     rotation = system.output_placement.rotation
     place = pin.SE3(rotation, ends.position(str(name)))
@@ -48,6 +52,14 @@ def point(system: System, name: str | None = None) -> Point:
     return Point(str(name), np.asarray(motion @ system.expansion[rows]))
 
 
-def _example(system: System) -> str:
-    body, element = next(iter(system.elements.items()))
-    return f"{body}.{element.nodes[0]}"
+def _nodes(system: System, body: str) -> list[str]:
+    return [f"{body}.{node}" for node in system.elements[body].nodes]
+
+
+def _unknown_body(system: System, name: str) -> UnknownNameError:
+    """With the instances of a body that there are several of, or what is meant by a name that is almost right."""
+    known = [OUTPUT, *system.elements]
+    instances = [body for body in system.elements if system.stems.get(body) == name]
+    if instances:
+        return UnknownNameError("body", name, known, f"There are several: {', '.join(instances)}")
+    return unknown("body", name, known)

@@ -1,5 +1,6 @@
 """Frequency responses as files."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -51,6 +52,18 @@ def test_pictures_are_drawn_whole(response: FrequencyResponse, tmp_path: Path) -
     text = (tmp_path / "h.svg").read_text()
     assert "receptance / (rad/(N m))" in text
     assert [each.name for each in tmp_path.iterdir()] == ["h.svg"]
+
+
+def test_pictures_of_many_curves_and_any_title(response: FrequencyResponse, tmp_path: Path) -> None:
+    """No mathematics in titles, round-off does not stretch the axis, and a long legend covers nothing."""
+    pytest.importorskip("matplotlib")
+    many = ["u", "v", "w", "u/v", "v/u", "u/w", "w/u"]
+    tiny = replace(response, values=response.values * np.where(np.eye(6) > 0.0, 1.0, 1e-14))
+    for k, each in enumerate((tiny, replace(tiny, values=0.0 * tiny.values))):
+        each.save(tmp_path / f"{k}.svg", many, r"a $head of \\alpha")
+    text = (tmp_path / "0.svg").read_text()
+    assert "$head" in text
+    assert "10^{-1" not in text  # decades of 1e-10 and below
 
 
 @pytest.mark.parametrize(

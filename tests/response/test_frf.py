@@ -156,8 +156,8 @@ def test_without_damping_a_resonance_is_told(tmp_path: Path) -> None:
         ({"frequencies_hz": []}, r"found an array of shape \(0,\)"),
         ({"frequencies_hz": "fast"}, "found 'fast'"),
         ({"to": "one.and"}, "unknown node of one 'and'; known: end"),
-        ({"to": "three.end"}, "unknown body 'three'; known: one, two"),
-        ({"at": "one"}, "found 'one', expected body.node, such as one.end"),
+        ({"to": "three.end"}, "unknown body 'three'; known: output, one, two"),
+        ({"at": "one"}, "node: found 'one', expected body.node, one of one.end"),
         ({"quantity": "stiffness"}, "unknown quantity 'stiffness'; known: receptance, mobility, accelerance"),
     ],
 )
