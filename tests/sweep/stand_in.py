@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import json
+import multiprocessing
 import os
 import signal
 import time
 from dataclasses import dataclass
+from multiprocessing import forkserver
+from multiprocessing.context import ForkServerContext
 from pathlib import Path
 
 import numpy as np
@@ -29,6 +32,16 @@ class StandIn:
             journal.write(f"{start} {stop}\n")
         time.sleep(self.seconds)
         return results(start, stop)
+
+
+def processes() -> ForkServerContext:
+    """Where processes come from: forked, with everything loaded, so that they are at work at once."""
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(
+        ["pinocchio", "distributed", "prs_model.sweep.kernels_jit", "prs_model.machine", __name__]
+    )
+    forkserver.ensure_running()
+    return context
 
 
 def results(start: int, stop: int) -> Block:

@@ -2,7 +2,6 @@
 
 import json
 import logging
-import multiprocessing
 import os
 import random
 import signal
@@ -24,7 +23,7 @@ from prs_model.sweep.plan import Plan
 from prs_model.sweep.poses import poses_of
 from prs_model.sweep.request import Request
 from prs_model.sweep.store import Store, opened, piece_length
-from tests.sweep.stand_in import RUN, SHAPE, StandIn, evaluated, results, run, run_killed_before_renaming
+from tests.sweep.stand_in import RUN, SHAPE, StandIn, evaluated, processes, results, run, run_killed_before_renaming
 
 SIZE = SHAPE[0] * SHAPE[1]
 FEW = (5,)  # poses, a piece each
@@ -37,9 +36,7 @@ def folder(tmp_path: Path) -> Path:
 
 def started(work: Callable[..., None], folder: Path, plan: StandIn) -> Any:
     """A process at work."""
-    context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload(["tests.sweep.stand_in"])
-    process = context.Process(target=work, args=(folder, plan))
+    process = processes().Process(target=work, args=(folder, plan))
     process.start()
     return process
 
