@@ -13,7 +13,7 @@ from ..modes import Modes
 from ..reduction import SuperElement, TravellingElement
 from ..response import FrequencyResponse
 from ..response.band import around
-from ..response.damping import damping_of
+from ..response.damping import Damping, damping_of
 from ..response.modal_equations import damping_ratios
 from ..synthesis import assemble
 from .stiffness import Factors, scaled_joints
@@ -21,10 +21,13 @@ from .stiffness import Factors, scaled_joints
 Parts = Mapping[str, SuperElement | TravellingElement]
 
 DEFAULT_DAMPING = 0.01
-"""Modal damping ratio for the frequency response of a machine that states no damping."""
+"""Modal damping ratio for the frequency response of a machine whose modes nothing damps."""
 
 _BAND = (0.1, 1.25)  # of the first and the last frequency shown
 _LINES = 400
+_SPARE = 4  # modes known of the start beyond those shown: one of them may come down among these
+_UNDAMPED = 1e-9  # damping ratio of round-off
+_CLOSE = 1e-6  # share of a frequency within which an undamped mode is not asked for: its response has no end
 
 
 @dataclass(frozen=True)
@@ -36,6 +39,20 @@ class Question:
 
 
 @dataclass(frozen=True, eq=False)
+class Scope:
+    """What holds for all answers of a session: how many modes, and over which frequencies (f,) [Hz] the response.
+
+    start: the modes that others are compared with, a few more than are shown. damping: the ratio that stands in where
+    nothing damps the modes, else None.
+    """
+
+    start: Modes
+    count: int
+    band: FloatArray
+    damping: float | None
+
+
+@dataclass(frozen=True, eq=False)
 class Answer:
     """The lowest modes, and the receptance at the tool point; None for a machine that nothing holds."""
 
@@ -44,34 +61,46 @@ class Answer:
     response: FrequencyResponse | None
 
 
-def answer(machine: Machine, parts: Parts, question: Question, count: int, band: FloatArray | None = None) -> Answer:
-    """Solve for `count` modes with given parts, and for the response over `band` (f,) [Hz] and at the modes themselves.
+def scope_of(machine: Machine, pose: Mapping[str, float], count: int) -> Scope:
+    """The scope of a session of so many modes that starts at a pose [m, rad]. Raises UnreachablePoseError."""
+    start = machine.assemble(machine.configuration(**pose)).modes(count + _SPARE)
+    elastic = start.frequencies[:count][start.frequencies[:count] > 0.0]
+    band = np.linspace(_BAND[0] * elastic[0], _BAND[1] * elastic[-1], _LINES) if elastic.size else np.zeros(0)
+    return Scope(start, count, band, _stand_in_damping(start))
 
-    band: by default from well below the first to beyond the last mode. Raises UnreachablePoseError.
+
+def answer(machine: Machine, parts: Parts, question: Question, scope: Scope) -> Answer:
+    """Solve with given parts for the modes, and for the response over the band and around the modes themselves.
+
+    Raises UnreachablePoseError.
     """
     configuration = machine.configuration(**question.pose)
     joints = scaled_joints(machine, question.factors)
-    modes = assemble(machine.description, parts, joints, configuration).modes(count)
-    return Answer(question, modes, _response(modes, band, default_damping(machine)))
+    modes = assemble(machine.description, parts, joints, configuration).modes(scope.count)
+    return Answer(question, modes, _response(modes, scope))
 
 
-def default_damping(machine: Machine) -> float | None:
-    """None where the machine states its damping, else the ratio that stands in for it."""
-    stated = machine.description.file.damping
-    has_some = bool(np.any(stated.modal)) or stated.rayleigh is not None or bool(stated.joints)
-    return None if has_some else DEFAULT_DAMPING
+def _stand_in_damping(modes: Modes) -> float | None:
+    """None where any mode is damped by what the machine states, whatever that is."""
+    stated = _ratios(modes, damping_of(modes.system))
+    return None if stated.any() else DEFAULT_DAMPING
 
 
-def band_of(modes: Modes) -> FloatArray:
-    """Frequencies (f,) [Hz] around the modes shown; empty for a machine without an elastic one."""
-    elastic = modes.frequencies[modes.frequencies > 0.0]
-    return np.linspace(_BAND[0] * elastic[0], _BAND[1] * elastic[-1], _LINES) if elastic.size else np.zeros(0)
+def _ratios(modes: Modes, damping: Damping) -> FloatArray:
+    """Damping ratios (k,), 0 of rigid-body modes too."""
+    found = np.nan_to_num(damping_ratios(modes, damping))
+    return np.where(found > _UNDAMPED, found, 0.0)
 
 
-def _response(modes: Modes, band: FloatArray | None, damping: float | None) -> FrequencyResponse | None:
-    band = band_of(modes) if band is None else band
-    if not band.size or modes.is_rigid.all():
+def _response(modes: Modes, scope: Scope) -> FrequencyResponse | None:
+    """Over the band, as far as these modes tell, and close round each of them."""
+    band = scope.band[scope.band <= _BAND[1] * modes.frequencies[-1]]
+    if not band.size:
         return None
-    every, model = modes.system.modes(modes.system.size), damping_of(modes.system, damping)
-    peaks = around(every, damping_ratios(every, model))
-    return every.frequency_response(np.union1d(band, peaks[(peaks > band[0]) & (peaks < band[-1])]), model)
+    damping = damping_of(modes.system, scope.damping)
+    ratios = _ratios(modes, damping)
+    peaks = around(modes, ratios)
+    lines = np.union1d(band, peaks[(peaks > band[0]) & (peaks < band[-1])])
+    endless = modes.frequencies[ratios == 0.0]
+    apart = np.abs(lines[:, None] - endless) > _CLOSE * lines[:, None]
+    return modes.frequency_response(lines[apart.all(axis=1)], damping)

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
     from ..modes import Modes
     from ..response import FrequencyResponse
+    from .following import Origin
 
 _COLOURS = {"u": "#0072b2", "v": "#d55e00", "w": "#009e73"}  # told apart by the colour-blind too
 _DASHES: dict[str, list[int]] = {"u": [], "v": [8, 4], "w": [2, 3]}
@@ -27,14 +28,16 @@ def paragraph(lines: Sequence[str], role: str = "status") -> str:
     return f'<p role="{role}" style="{_TEXT}">{"<br>".join([f"<b>{first}</b>", *others])}</p>'
 
 
-def frequency_table(found: Modes, start: Modes) -> str:
-    """Frequencies as HTML, how far they are from those at the start, and what moves."""
+def frequency_table(found: Modes, origins: Sequence[Origin | None]) -> str:
+    """Frequencies as HTML, which mode of the start each one was, how far it is from that, and what moves."""
     rows = [
-        f'<tr><td>{k + 1}</td><td class="frequency">{frequency:.3f}</td><td>{_change(start, k, frequency)}</td>'
+        f'<tr><td>{k}</td><td class="frequency">{frequency:.3f}</td>{_change(origin)}'
         f'<td style="text-align: left">{escape(f"{character.group} {character.motion}")}</td></tr>'
-        for k, (frequency, character) in enumerate(zip(found.frequencies, found.characters(), strict=True))
+        for k, (frequency, origin, character) in enumerate(
+            zip(found.frequencies, origins, found.characters(), strict=True), start=1
+        )
     ]
-    head = "".join(f"<th>{word}</th>" for word in ("mode", "Hz", "change"))
+    head = "".join(f"<th>{word}</th>" for word in ("mode", "Hz", "change", "was"))
     return (
         f'<table aria-label="natural frequencies" style="{_TEXT}; text-align: right; border-spacing: 0.5em 0">'
         f'<tr>{head}<th style="text-align: left">what moves</th></tr>{"".join(rows)}</table>'
@@ -63,8 +66,9 @@ def curves(response: FrequencyResponse) -> tuple[FloatArray, ...]:
     return response.frequencies, *(1e6 * np.abs(response.curve(axis)) for axis in _COLOURS)
 
 
-def _change(start: Modes, k: int, frequency: float) -> str:
-    """Against the mode of the same number at the start."""
-    if k >= len(start.frequencies) or start.frequencies[k] == 0.0:
-        return ""
-    return f"{100.0 * (frequency / start.frequencies[k] - 1.0):+.1f} %"
+def _change(origin: Origin | None) -> str:
+    """Two cells: the change of the frequency, and the mode of the start that has this shape."""
+    if origin is None:
+        return "<td></td><td>new</td>"
+    change = "" if origin.change is None else f"{round(100.0 * origin.change, 1) + 0.0:+.1f} %"
+    return f"<td>{change}</td><td>{origin.number}</td>"

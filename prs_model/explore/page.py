@@ -8,15 +8,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..machine import Machine
+from ..modes.drawn import AMPLITUDE
 from ..readable import pose_text
-from .answer import DEFAULT_DAMPING, Answer, Question, default_damping
+from .answer import Answer, Question, Scope
 from .controls import factor_sliders, pose_sliders
 from .figures import add_plot, curves, frequency_table, paragraph
+from .following import origins
 
 if TYPE_CHECKING:
     import viser
 
-_AMPLITUDE = 8.0  # % of the machine's size
+_AMPLITUDE = 100.0 * AMPLITUDE  # % of the machine's size
 _PERIOD = 2.0  # s, of the animation
 
 
@@ -31,10 +33,11 @@ class Page:
         gui: viser.GuiApi,
         machine: Machine,
         start: Answer,
+        scope: Scope,
         asked: Callable[[], None],
         turned: Callable[[], None],
     ):
-        self.machine, self.start = machine, start
+        self.machine, self.start, self.scope = machine, start, scope
         self.status, self.table = gui.add_html(""), gui.add_html("")
         self.pose = pose_sliders(gui, machine, start.question.pose, asked)
         self.factors = factor_sliders(gui, machine, asked)
@@ -45,8 +48,8 @@ class Page:
             self.animate = gui.add_checkbox("animate", True)
         for control in (self.mode, self.amplitude, self.animate):
             control.on_update(lambda _: turned())
-        self.plot = None if start.response is None else add_plot(gui, start.response, _damping_note(machine))
-        self.show(start, exact=True)
+        self.plot = None if start.response is None else add_plot(gui, start.response, _damping_note(scope))
+        self.show(start)
 
     def question(self) -> Question:
         """What the sliders ask for."""
@@ -63,13 +66,10 @@ class Page:
         phase = np.sin(2.0 * np.pi * seconds / _PERIOD) if self.animate.value else 1.0
         return float(0.01 * self.amplitude.value * phase)
 
-    def show(self, found: Answer, exact: bool) -> None:
-        """The figures of an answer; exact: whether its parts have been shaped with its joints."""
-        lines = [self._place(found)]
-        if not exact:
-            lines.append("Springs changed; the parts are being rebuilt for them, and figures will settle.")
-        self.status.content = paragraph(lines)
-        self.table.content = frequency_table(found.modes, self.start.modes)
+    def show(self, found: Answer, note: str = "") -> None:
+        """The figures of an answer, and what is to be said of them."""
+        self.status.content = paragraph(list(filter(None, [self._place(found), note])))
+        self.table.content = frequency_table(found.modes, origins(self.scope.start, found.modes))
         if found.response is not None and self.plot is not None:
             self.plot.data = curves(found.response)
 
@@ -81,5 +81,5 @@ class Page:
         return pose_text(found.question.pose, self.machine.kinematics.task.coordinates) or "its only pose"
 
 
-def _damping_note(machine: Machine) -> str:
-    return f"damping ratio {DEFAULT_DAMPING:g}" if default_damping(machine) is not None else "damping as described"
+def _damping_note(scope: Scope) -> str:
+    return "damping as described" if scope.damping is None else f"damping ratio {scope.damping:g}"

@@ -7,17 +7,18 @@ of its own, and moves as the rigid motion that fits its part of the mode best; w
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Protocol
+from math import inf
+from typing import Any, Protocol, TypeGuard
 
 import numpy as np
 import pinocchio as pin
 
 from ..arrays import FloatArray, IntArray
-from ..errors import PrsError
+from ..errors import PrsError, short
 from ..modes import Modes
+from ..modes.drawn import AMPLITUDE, drawn_bodies, largest_length, machine_size
 from ..reduction import Surface
 from ..synthesis import System
-from .drawn import drawn_bodies, largest_length, machine_size
 
 _STILL = np.array([0.69, 0.75, 0.79, 1.0])
 _SEEN_THROUGH = np.array([0.69, 0.75, 0.79, 0.25])
@@ -48,20 +49,21 @@ class ModeMotion:
 
 
 def mode_motion(
-    modes: Modes, number: int, *, amplitude: float = 0.08, frames: int = 40, period: float = 2.0
+    modes: Modes, number: int, *, amplitude: float = AMPLITUDE, frames: int = 40, period: float = 2.0
 ) -> ModeMotion:
     """Mode `number`, counted from 1, as joint values for any of Pinocchio's visualizers.
 
     amplitude: largest displacement over the machine's size; period: of the animation [s], not of the mode.
-    Raises PrsError for a mode that has not been solved for.
+    Raises PrsError for a mode that has not been solved for, or numbers that make no motion.
     """
-    count = len(modes.frequencies)
-    if not 1 <= number <= count:
-        raise PrsError(f"mode: found {number}, expected one of the {count} that were solved for, from 1 to {count}")
+    _check_mode(modes, number)
+    _check_whole("frames", frames)
+    _check_positive("amplitude", amplitude)
+    _check_positive("period", period)
     bodies = drawn_bodies(modes.system)
     twists = _rigid_motions(modes, number - 1)
     largest = max(largest_length(_under(twists[name], body.points)) for name, body in bodies.items()) or 1.0
-    scale = amplitude * machine_size(modes.system) / largest
+    scale = amplitude * machine_size(modes.system, bodies) / largest
     phases = np.sin(2.0 * np.pi * np.arange(frames) / frames)
     configurations = [_joint_values(modes.system, twists, scale * phase) for phase in phases]
     return ModeMotion(*_free_bodies(modes.system, bodies), np.array(configurations), period / frames)
@@ -75,6 +77,7 @@ def show_mode(
     The bodies appear beside what it shows, below `name`; how: as of `mode_motion`. Returns the visualizer of the mode.
     Raises PrsError for a mode that has not been solved for.
     """
+    _check_whole("periods", periods)
     motion = mode_motion(modes, number, **how)  # type: ignore[arg-type]
     kind: Any = type(visualizer)
     shown: Visualizer = kind(motion.model, pin.GeometryModel(), motion.geometry)
@@ -83,6 +86,27 @@ def show_mode(
     shown.play(list(np.tile(motion.configurations, (periods, 1))), motion.dt)
     shown.display(motion.configurations[0])
     return shown
+
+
+def _check_mode(modes: Modes, number: object) -> None:
+    count = len(modes.frequencies)
+    if not _is_whole(number) or not 1 <= number <= count:
+        expected = f"one of the {count} that were solved for, from 1 to {count}"
+        raise PrsError(f"mode: found {short(repr(number))}, expected {expected}")
+
+
+def _check_whole(what: str, given: object) -> None:
+    if not _is_whole(given) or given < 1:
+        raise PrsError(f"{what}: found {short(repr(given))}, expected a whole number above zero")
+
+
+def _check_positive(what: str, given: object) -> None:
+    if not isinstance(given, int | float | np.integer | np.floating) or not 0.0 < given < inf:
+        raise PrsError(f"{what}: found {short(repr(given))}, expected a number above zero")
+
+
+def _is_whole(given: object) -> TypeGuard[int]:
+    return isinstance(given, int | np.integer) and not isinstance(given, bool)
 
 
 def _rigid_motions(modes: Modes, mode: int) -> dict[str, FloatArray]:

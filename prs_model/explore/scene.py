@@ -9,7 +9,7 @@ import pinocchio as pin
 
 from ..arrays import FloatArray
 from ..modes import Modes
-from .drawn import drawn_bodies, largest_length, machine_size, mode_displacements
+from ..modes.drawn import box_around, drawn_bodies, largest_length, machine_size, mode_displacements
 
 if TYPE_CHECKING:
     import viser
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 _STILL = np.array([176, 190, 202])
 _MOVING = np.array([232, 119, 34])
 _GROUNDED_OPACITY = 0.25  # a frame around the machine must not hide it
-_VIEW = np.array([1.1, -0.8, 0.65])  # from the machine's middle, over its size
+_VIEW = np.array([0.82, -0.6, 0.49])  # from the machine's middle, over its size
 
 
 class Scene:
@@ -26,8 +26,8 @@ class Scene:
     def __init__(self, server: viser.ViserServer, modes: Modes):
         self.server = server
         server.scene.configure_default_lights(cast_shadow=False)  # two fifths of the frames on a slow computer
-        self.size = machine_size(modes.system)
         self.bodies = drawn_bodies(modes.system)
+        self.size = machine_size(modes.system, self.bodies)
         self.moved = {name: np.zeros_like(body.points) for name, body in self.bodies.items()}
         self.meshes = {
             name: server.scene.add_mesh_simple(
@@ -42,14 +42,14 @@ class Scene:
             )
             for name, body in self.bodies.items()
         }
-        self.tool = server.scene.add_frame("/output", axes_length=0.12 * self.size, axes_radius=0.004 * self.size)
+        self.tool = server.scene.add_frame("/output", axes_length=0.09 * self.size, axes_radius=0.003 * self.size)
         self._look(modes)
 
     def show(self, modes: Modes, mode: int) -> None:
         """Stand where the modes were found, and move as number `mode` of them (counted from 0)."""
         system = modes.system
         self.bodies = drawn_bodies(system)
-        self.moved = mode_displacements(modes, self.bodies, mode)
+        self.moved = {name: each[0] for name, each in mode_displacements(modes, self.bodies, [mode]).items()}
         with self.server.atomic():
             for name, mesh in self.meshes.items():
                 mesh.position, mesh.wxyz = _position(system.placements[name]), _quaternion(system.placements[name])
@@ -65,16 +65,9 @@ class Scene:
                 mesh.vertices = deformed.astype(np.float32)
 
     def _look(self, modes: Modes) -> None:
-        places = modes.system.placements
-        points = np.vstack([_seen(body.points, places[name]) for name, body in self.bodies.items()])
-        middle = (points.min(axis=0) + points.max(axis=0)) / 2.0
-        camera = self.server.initial_camera
+        low, high = box_around(modes.system, self.bodies)
+        middle, camera = (low + high) / 2.0, self.server.initial_camera
         camera.position, camera.look_at = tuple(middle + self.size * _VIEW), tuple(middle)
-
-
-def _seen(points: FloatArray, place: pin.SE3) -> FloatArray:
-    """Points (p, 3) of a body in the world."""
-    return np.asarray(points @ place.rotation.T + place.translation)
 
 
 def _position(place: pin.SE3) -> FloatArray:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from ..errors import MissingExtraError, PrsError
 from ..machine import Machine
-from .answer import Question, answer
+from .answer import Question, answer, scope_of
 from .session import Session
 from .stiffness import elastic_entries
 
@@ -61,12 +61,12 @@ def serving(
     check_viser()
     port = check_port(port)
     factors = dict.fromkeys(elastic_entries(machine), 1.0)
-    start = machine.configuration(**(pose or {}))
-    _ = machine.assemble(start)  # its warnings
-    first = answer(machine, machine.parts, Question(start.pose, factors), count)
+    start = machine.configuration(**(pose or {})).pose
+    scope = scope_of(machine, start, count)
+    first = answer(machine, machine.parts, Question(start, factors), scope)
     server = _server(port, machine.description.file.title or machine.name)
     try:
-        session = Session(server, machine, first)
+        session = Session(server, machine, first, scope)
         try:
             yield session
         finally:

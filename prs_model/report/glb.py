@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..modes.drawn import AMPLITUDE
 from .scene import Scene, Shape
 
 _FLOAT, _UNSIGNED = 5126, 5125
@@ -20,7 +21,7 @@ _Z_UP = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]
 _KEYS = 24  # of one swing
 
 
-def glb(scene: Scene, mode: int, name: str, amplitude: float = 0.06, seconds: float = 1.6) -> bytes:
+def glb(scene: Scene, mode: int, name: str, amplitude: float = AMPLITUDE, seconds: float = 1.6) -> bytes:
     """The file's content. amplitude: largest displacement, as a share of the machine's size; seconds: of one swing.
 
     True frequencies are too fast to be seen; the name says which it is.

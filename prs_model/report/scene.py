@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..reduction.stand_in import stand_in
+from ..modes.drawn import box_around, drawn_bodies, machine_size, mode_displacements
 
 if TYPE_CHECKING:
     from ..modes import Modes
+    from ..reduction import Surface
+    from ..synthesis import System
 
-_THICKNESS = 0.012  # of bars, as a share of the machine's size
 _CREASE = np.cos(np.radians(30.0))
 
 
@@ -47,35 +48,29 @@ class Scene:
 def scene_of(modes: Modes) -> Scene:
     """The bodies on their picture surfaces; of those that have none, what stands for them."""
     system = modes.system
-    thickness = _THICKNESS * _extent(modes)
-    bodies = {name: element.surface or stand_in(element, thickness) for name, element in system.elements.items()}
-    points, moved = {}, {}
-    for name, surface in bodies.items():
-        place = system.placements[name]
-        points[name] = surface.points @ place.rotation.T + place.translation
-        own = np.einsum("pin,nk->kpi", surface.recovery.astype(float), modes.body_shapes(name))
-        moved[name] = own @ place.rotation.T
-    largest = np.max([np.linalg.norm(each, axis=2).max(axis=1, initial=0.0) for each in moved.values()], axis=0)
-    scale = np.where(largest > 0.0, largest, 1.0)[:, None, None]
-    every = np.vstack(list(points.values()))
-    low, high = every.min(axis=0), every.max(axis=0)
+    bodies = drawn_bodies(system)
+    low, high = box_around(system, bodies)
+    moved = mode_displacements(modes, bodies)
     return Scene(
-        shapes=tuple(
-            Shape(
-                name,
-                system.stems.get(name, name),
-                system.elements[name].grounded,
-                points[name],
-                surface.triangles,
-                edges_of(points[name], surface.triangles),
-                moved[name] / scale,
-            )
-            for name, surface in bodies.items()
-        ),
+        shapes=tuple(_shape(system, name, surface, moved[name]) for name, surface in bodies.items()),
         centre=(low + high) / 2.0,
-        size=float(np.linalg.norm(high - low)),
+        size=machine_size(system, bodies),
         output=np.asarray(system.output_placement.translation),
         axes=np.asarray(system.output_placement.rotation),
+    )
+
+
+def _shape(system: System, name: str, surface: Surface, moved: FloatArray) -> Shape:
+    place = system.placements[name]
+    points = surface.points @ place.rotation.T + place.translation
+    return Shape(
+        name,
+        system.stems.get(name, name),
+        system.elements[name].grounded,
+        points,
+        surface.triangles,
+        edges_of(points, surface.triangles),
+        moved @ place.rotation.T,
     )
 
 
@@ -93,14 +88,3 @@ def edges_of(points: FloatArray, triangles: IntArray) -> IntArray:
     pairs = owner[order][first[smooth][:, None] + np.arange(2)]
     smooth[smooth] = np.einsum("ei,ei->e", normals[pairs[:, 0]], normals[pairs[:, 1]]) > _CREASE
     return np.asarray(edges[~smooth])
-
-
-def _extent(modes: Modes) -> float:
-    """Diagonal [m] of the box around all nodes and surfaces."""
-    system = modes.system
-    clouds = [
-        system.placements[name].act(r)
-        for name, element in system.elements.items()
-        for r in (element.positions if element.surface is None else element.surface.points[::20])
-    ]
-    return float(np.linalg.norm(np.ptp(np.array(clouds), axis=0))) or 1.0

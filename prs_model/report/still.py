@@ -10,14 +10,14 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..errors import MissingExtraError
+from ..modes.drawn import AMPLITUDE
 from ..modes.figure_file import write_figure
 from ..response.picture import matplotlib_figure
 from .scene import Scene
 from .study import Study
 
 _YAW, _PITCH = np.radians(-35.0), np.radians(20.0)
-_AMPLITUDE = 0.06  # of the machine's size
-_AXIS = 0.08  # length of u, v and w drawn, likewise
+_AXIS = 0.08  # length of u, v and w drawn, over the machine's size
 _FINE = 0.06  # longest side of what is painted, likewise: large faces are in front of some and behind others
 _WIDTH, _TITLE, _BAR = 2.6, 0.45, 0.5  # inches: of a panel, above it, and below the last one
 _LIGHT = np.array([0.3, 0.5, 0.81])
@@ -51,7 +51,7 @@ def _draw(axes: Any, scene: Scene, mode: int) -> None:
     turn, faces, colours = _camera(), [], []
     for shape in scene.shapes:
         moved = shape.displacements[mode]
-        places = (shape.points + _AMPLITUDE * scene.size * moved - scene.centre) @ turn.T
+        places = (shape.points + AMPLITUDE * scene.size * moved - scene.centre) @ turn.T
         shown = np.concatenate([places, moved], axis=1)[shape.triangles]
         corners, moves = np.split(shown if shape.grounded else _split(shown, _FINE * scene.size), 2, axis=2)
         colour = colours_of(np.linalg.norm(moves.mean(axis=1), axis=1))

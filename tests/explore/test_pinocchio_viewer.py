@@ -1,5 +1,6 @@
 """Mode shapes as Pinocchio's visualizers take them."""
 
+import re
 from typing import Any
 
 import numpy as np
@@ -47,7 +48,7 @@ def test_the_largest_displacement_is_the_amplitude() -> None:
             )
         )
     largest = np.linalg.norm(seen[1] - seen[0], axis=1).max()
-    assert largest == pytest.approx(0.001 * np.ptp(seen[0], axis=0).max(), rel=0.1)
+    assert largest == pytest.approx(0.001 * np.linalg.norm(np.ptp(seen[0], axis=0)), rel=0.1)
 
 
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")  # pinocchio.visualize imports all viewers there are
@@ -73,3 +74,22 @@ def test_a_mode_that_is_not_there(number: int) -> None:
     modes = prs.load_machine("hexapod").modes(3)
     with pytest.raises(prs.PrsError, match=f"found {number}, expected one of the 3 that were solved for"):
         mode_motion(modes, number)
+
+
+@pytest.mark.parametrize(
+    ("how", "words"),
+    [
+        ({"number": 1.5}, "mode: found 1.5, expected one of the 3"),
+        ({"number": True}, "mode: found True, expected one of the 3"),
+        ({"frames": 0}, "frames: found 0, expected a whole number above zero"),
+        ({"frames": -1}, "frames: found -1, expected a whole number above zero"),
+        ({"frames": 2.5}, "frames: found 2.5"),
+        ({"amplitude": float("nan")}, "amplitude: found nan, expected a number above zero"),
+        ({"amplitude": "large"}, "amplitude: found 'large', expected a number above zero"),
+        ({"period": 0.0}, "period: found 0.0, expected a number above zero"),
+    ],
+)
+def test_a_motion_that_makes_no_sense(how: dict[str, Any], words: str) -> None:
+    modes = prs.load_machine("hexapod").modes(3)
+    with pytest.raises(prs.PrsError, match=re.escape(words)):
+        mode_motion(modes, **{"number": 1, **how})

@@ -1,15 +1,24 @@
 """A session without a browser: its sliders are moved from here."""
 
 import socket
+from collections.abc import Callable
 from time import monotonic, sleep
 
 import numpy as np
 import pytest
 
 import prs_model as prs
+from prs_model.explore.following import origins
 from prs_model.explore.server import check_port, serving
 from prs_model.explore.session import Session
 from tests.explore.conftest import Serve
+
+
+def wait_for(condition: Callable[[], bool]) -> None:
+    end = monotonic() + 60.0
+    while not condition():
+        assert monotonic() < end
+        sleep(0.01)
 
 
 def settle(session: Session, solved: int) -> None:
@@ -64,6 +73,66 @@ def test_parts_follow_their_joints(serve: Serve) -> None:
     assert session.found.modes.frequencies == pytest.approx(expected, rel=1e-9)
     assert at_once[-1] == pytest.approx(expected, rel=0.01)
     assert not np.allclose(at_once[-1], expected, rtol=1e-6)
+
+
+def test_parts_that_cannot_be_rebuilt_end_nothing(
+    serve: Serve, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """They keep their shapes, which is said as long as it is so; other factors are tried anew."""
+    machine = prs.load_machine("head_3prs")
+    with monkeypatch.context() as broken:
+        broken.setattr("prs_model.explore.reshaping.parts_under", _breaks)
+        session = serve(machine, count=2)
+        session.page.factors["P"].value = 4.0
+        session.asked.set()
+        wait_for(lambda: "no such shape" in session.page.status.content)
+        assert "no such shape" in caplog.text
+        session.page.pose["z"].move(1.26)
+        session.asked.set()
+        wait_for(lambda: "could not be rebuilt" in session.page.status.content)
+        assert "z 1260 mm" in session.page.status.content
+    session.page.factors["P"].value = 2.0
+    session.asked.set()
+    expected = machine.replace({"joints.P.stiffness_factor": 2.0}).modes(2, z=1.26).frequencies
+    wait_for(lambda: np.allclose(session.found.modes.frequencies, expected, rtol=1e-9))
+    wait_for(lambda: "rebuilt" not in session.page.status.content)
+
+
+def _breaks(*_: object) -> None:
+    raise RuntimeError("no such shape")
+
+
+@pytest.mark.parametrize(
+    ("damping", "note"),
+    [
+        ({"rayleigh": {"alpha": 0.0, "beta": 0.0}}, "damping ratio 0.01"),
+        ({"modal": 0.0}, "damping ratio 0.01"),
+        ({"joints": {"U": {"viscous": 1e-3}}}, "damping ratio 0.01"),  # wholly rigid
+        ({"modal": [0.01, 0.0]}, "damping as described"),  # the undamped modes' peaks have no end
+        ({"joints": {"P": {"viscous": 1e-5}}}, "damping as described"),
+    ],
+)
+def test_damping_is_stood_in_for_where_nothing_is_damped(serve: Serve, damping: dict[str, object], note: str) -> None:
+    session = serve(prs.load_machine("hexapod").replace({"damping": damping}), count=4)
+    response = session.found.response
+    assert response is not None
+    assert np.all(np.isfinite(response.values))
+    assert note in session.page.plot.title  # type: ignore[operator,union-attr]
+
+
+def test_modes_are_known_by_their_shapes(serve: Serve) -> None:
+    """On soft drives the head's motion along w comes down past two others."""
+    session = serve(prs.load_machine("head_3prs"), count=4)
+    start = session.scope.start
+    assert [each.number for each in origins(start, session.found.modes) if each] == [1, 2, 3, 4]
+    session.page.factors["P"].value = 0.1
+    session.asked.set()
+    wait_for(lambda: "</td><td>5</td>" in session.page.table.content)
+    third = origins(start, session.found.modes)[2]
+    assert third is not None
+    assert third.number == 5
+    assert third.change == pytest.approx(session.found.modes.frequencies[2] / start.frequencies[4] - 1.0)
+    assert -0.7 < third.change < -0.5
 
 
 def test_a_busy_port_is_refused() -> None:
