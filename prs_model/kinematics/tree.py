@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import pinocchio as pin
@@ -21,6 +22,11 @@ class Link:
     carrier: int
     rotation: FloatArray
     offset: FloatArray
+
+    @cached_property
+    def on_joint(self) -> bool:
+        """Whether it stands in the joint frame itself, as links do that no fixed joint lies between."""
+        return not self.offset.any() and np.array_equal(self.rotation, np.eye(3))
 
 
 @dataclass(frozen=True)
@@ -73,8 +79,8 @@ class Tree:
     def link_frame(self, frames: Frames, name: str) -> tuple[FloatArray, FloatArray]:
         """Rotation (N, 3, 3) and position (N, 3) of a link."""
         link = self.link(name)
-        R = frames.rotations[:, link.carrier]
-        return R @ link.rotation, frames.positions[:, link.carrier] + R @ link.offset
+        R, p = frames.rotations[:, link.carrier], frames.positions[:, link.carrier]
+        return (R, p) if link.on_joint else (R @ link.rotation, p + R @ link.offset)
 
     def placements(self, frames: Frames, name: str) -> FloatArray:
         """Homogeneous placements (N, 4, 4) of a link, seen from the root link."""
