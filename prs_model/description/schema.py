@@ -278,15 +278,25 @@ class Damping(Section):
     joints: dict[str, JointDamping] = Field(default_factory=dict)
 
 
+class PublishedShare(Section):
+    """What a mode, counted from 1, gives to the static compliance of the end-reference point, as a share of it."""
+
+    mode: Annotated[int, Field(ge=1)]
+    share: Annotated[float, Field(ge=0.0, le=1.0)]
+
+
 class Verification(Section):
     """Where ``prs-model verify`` holds reduced models against the complete order, and what others have found.
 
     poses: besides the reference, every combination of these values, in the units of the file; coordinates left out
-    stand at their reference. published [Hz]: frequencies at the reference pose by where they come from.
+    stand at their reference. published [Hz]: frequencies at the reference pose by where they come from. shares: there
+    too, of the compliance along an axis. note: why the model differs from what is published, in a sentence or two.
     """
 
     poses: dict[str, tuple[Number, ...]] = Field(default_factory=dict)
     published: dict[str, tuple[Frequency, ...]] = Field(default_factory=dict)
+    shares: dict[str, dict[Literal["u", "v", "w"], PublishedShare]] = Field(default_factory=dict)
+    note: str = ""
 
 
 class Output(Section):
