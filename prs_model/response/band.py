@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arrays import FloatArray
+from .quantity import six_digits
 
 if TYPE_CHECKING:
     from ..modes import Modes
@@ -20,8 +21,8 @@ def band(modes: Modes, ratios: FloatArray, count: int = 8, lines: int = 1000) ->
     """Frequencies (f,) [Hz], ascending: evenly from below the first mode to beyond the `count`-th, closer round each.
 
     ratios (k,): damping ratios of the modes, of `damping_ratios`; nan for rigid-body modes. The largest line of a mode
-    is within 1 % of its peak, however little damped. Modes without damping are approached, not met.
-    Rigid-body modes do not count; empty where there are no others.
+    is within 1 % of its peak for ratios from 0.0001 on. Modes without damping are approached, not met. Rigid-body modes
+    do not count; empty where there are no others. Lines have six digits, as many as a universal file has.
     """
     elastic = modes.frequencies[modes.frequencies > 0.0]
     if not elastic.size:
@@ -29,7 +30,8 @@ def band(modes: Modes, ratios: FloatArray, count: int = 8, lines: int = 1000) ->
     low, high = _FIRST * elastic[0], _LAST * elastic[:count][-1]
     even = np.linspace(low, high, lines)
     peaks = around(modes, ratios)
-    kept = np.union1d(even, peaks[(peaks > low) & (peaks < high)])
+    every = np.concatenate([even, peaks[(peaks > low) & (peaks < high)]])
+    kept = np.unique([six_digits(float(each)) for each in every])
     return kept[~np.isin(kept, modes.frequencies[ratios == 0.0])]
 
 

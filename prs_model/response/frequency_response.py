@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from numpy.typing import ArrayLike
 
 from ..arrays import FloatArray
 from .damping import DampingLike, damping_of
 from .frf import direct_receptance, modal_receptance
-from .points import point
+from .points import Point, point
 from .quantity import (
     DIRECTIONS,
     ComplexArray,
@@ -36,12 +36,20 @@ if TYPE_CHECKING:
     from ..synthesis import System
 
 
+class Node(NamedTuple):
+    """Its number, the same for one name at all poses, and position (3,) [m] from the world's origin, along u, v, w."""
+
+    number: int
+    position: FloatArray
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class FrequencyResponse:
     """values (f, 6, 6): motion of node `to` along and about u, v, w for a unit force or moment at node `at`.
 
     frequencies (f,) [Hz]; rows are responses, columns excitations, translations first; a node is ``body.node``, or
-    ``output``. quantity: displacement (receptance), velocity (mobility) or acceleration (accelerance) per force.
+    ``output``, and `nodes` has its number and place. quantity: displacement (receptance), velocity (mobility) or
+    acceleration (accelerance) per force.
     """
 
     frequencies: FloatArray
@@ -49,6 +57,7 @@ class FrequencyResponse:
     quantity: Response
     to: str
     at: str
+    nodes: Mapping[str, Node]
 
     def __repr__(self) -> str:
         band = f"{self.frequencies.min():g} .. {self.frequencies.max():g} Hz"
@@ -111,7 +120,7 @@ def of_modes(
     _warn_beyond(modes, frequencies)
     receptance = modal_receptance(modes, frequencies, model, *ends, static_correction)
     values = from_receptance(receptance, frequencies, quantity)
-    return FrequencyResponse(frequencies, values, quantity, ends[0].name, ends[1].name)
+    return _labelled(frequencies, values, quantity, *ends)
 
 
 def of_system(
@@ -128,7 +137,14 @@ def of_system(
     model = damping_of(system, damping)
     ends = point(system, to), point(system, at)
     values = from_receptance(direct_receptance(system, frequencies, model, *ends), frequencies, quantity)
-    return FrequencyResponse(frequencies, values, quantity, ends[0].name, ends[1].name)
+    return _labelled(frequencies, values, quantity, *ends)
+
+
+def _labelled(
+    frequencies: FloatArray, values: ComplexArray, quantity: Response, to: Point, at: Point
+) -> FrequencyResponse:
+    nodes = {end.name: Node(end.number, end.position) for end in (to, at)}
+    return FrequencyResponse(frequencies, values, quantity, to.name, at.name, nodes)
 
 
 def _warn_beyond(modes: Modes, frequencies: FloatArray) -> None:

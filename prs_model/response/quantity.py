@@ -43,15 +43,16 @@ def unit(response: str, excitation: str, quantity: Response = "receptance") -> s
 
 def motion_unit(direction: str, quantity: Response = "receptance") -> str:
     """Such as ``m`` or ``rad/s^2``."""
-    return f"{'rad' if _is_rotation(direction) else 'm'}{_PER_TIME[quantity]}"
+    return f"{'rad' if is_rotation(direction) else 'm'}{_PER_TIME[quantity]}"
 
 
 def load_unit(direction: str) -> str:
     """``N`` or ``N m``."""
-    return "N m" if _is_rotation(direction) else "N"
+    return "N m" if is_rotation(direction) else "N"
 
 
-def _is_rotation(direction: str) -> bool:
+def is_rotation(direction: str) -> bool:
+    """Whether a direction is one of ru, rv, rw."""
     return DIRECTIONS.index(direction) >= 3
 
 
@@ -98,3 +99,8 @@ def real_numbers(what: str, given: object, expected: str) -> FloatArray:
     if not np.all(np.isfinite(array)):
         raise PrsError(f"{what}: found {array[~np.isfinite(array)].flat[0]}, expected {expected}")
     return array.astype(float)
+
+
+def six_digits(value: float) -> float:
+    """A number as universal files hold it."""
+    return float(f"{value:.5e}")

@@ -35,15 +35,45 @@ def test_universal_file_comes_back(response: FrequencyResponse, tmp_path: Path) 
     pyuff = pytest.importorskip("pyuff")
     response.save(tmp_path / "h.uff")
     file = pyuff.UFF(str(tmp_path / "h.uff"))
-    assert list(file.get_set_types()) == [164, *[58] * 36]
+    assert list(file.get_set_types()) == [164, 15, *[58] * 36]
     sets = file.read_sets()
+    system = prs.load_machine("hexapod").assemble()
+    names = ["output", *(f"{body}.{node}" for body, each in system.elements.items() for node in each.nodes)]
+    upper = 1 + names.index("upper_1.joint")
+    assert sets[1]["node_nums"] == [upper, 1]
+    place = (
+        system.output_placement.rotation.T
+        @ np.array([system.ends.position("upper_1.joint"), system.output_placement.translation]).T
+    )
+    assert np.array([sets[1][axis] for axis in "xyz"]) == pytest.approx(place, rel=1e-5, abs=1e-9)
     assert (sets[0]["units_code"], sets[0]["length"], sets[0]["force"]) == (1, 1.0, 1.0)
     last = sets[-2]  # rw/rv
-    assert (last["func_type"], last["rsp_node"], last["rsp_dir"], last["ref_node"], last["ref_dir"]) == (4, 1, 6, 2, 5)
+    ends = (last["rsp_node"], last["rsp_dir"], last["ref_node"], last["ref_dir"])
+    assert (last["func_type"], *ends) == (4, upper, 6, 1, 5)
+    assert (last["ordinate_len_unit_exp"], last["orddenom_force_unit_exp"], last["orddenom_len_unit_exp"]) == (0, 1, 1)
     assert (last["ordinate_spec_data_type"], last["orddenom_spec_data_type"]) == (8, 13)
     assert last["id1"].strip() == "receptance rw/rv [rad/(N m)]"
     assert last["x"] == pytest.approx(response.frequencies, rel=1e-5)
     assert last["data"] == pytest.approx(response.curve("rw/rv"), rel=1e-10)
+
+
+def test_universal_files_keep_lines_apart(response: FrequencyResponse, tmp_path: Path) -> None:
+    """Even lines are said by the first and the step; uneven ones have six digits, and are refused where these fail."""
+    pyuff = pytest.importorskip("pyuff")
+    modes = prs.load_machine("hexapod").modes(6)
+    for lines, even in ((np.linspace(500.0, 1500.0, 41), 1), (np.geomspace(500.0, 1500.0, 41), 0)):
+        modes.frequency_response(lines, 0.02).save(tmp_path / "h.uff", "u")
+        found = pyuff.UFF(str(tmp_path / "h.uff")).read_sets()[-1]
+        assert found["abscissa_spacing"] == even
+        assert found["x"] == pytest.approx(lines, rel=1e-5)
+    (tmp_path / "h.uff").unlink()
+    for lines, words in (
+        ([1000.001, 1000.002, 1001.0], "1000.001 and 1000.002 Hz apart"),
+        ([1000.0], "two frequencies"),
+    ):
+        with pytest.raises(prs.PrsError, match=words):
+            modes.frequency_response(lines, 0.02).save(tmp_path / "h.uff")
+    assert not list(tmp_path.iterdir())
 
 
 def test_pictures_are_drawn_whole(response: FrequencyResponse, tmp_path: Path) -> None:
