@@ -13,12 +13,13 @@ from itertools import islice
 from typing import Any, Protocol
 from uuid import uuid4
 
-from ..errors import MissingExtraError, PrsError
+from ..errors import MissingExtraError, PrsError, short
 from .store import Block
 
 try:
     import distributed
     from distributed import Client, Future, get_worker
+    from distributed.comm.core import CommClosedError
     from distributed.diagnostics.plugin import WorkerPlugin
 except ImportError as error:
     raise MissingExtraError("distributed", "cluster", "a sweep on a cluster") from error
@@ -42,7 +43,7 @@ def evaluate(
     Raises what the evaluation of a pose raises, and PrsError for a cluster that cannot be reached, has no workers for a
     minute, went away, or whose workers die over one chunk as often as it allows.
     """
-    with _client(cluster) as client, client.as_current(), _on_workers(client, plan) as name:
+    with _client(cluster) as client, _on_workers(client, plan) as name:
         waiting = iter(chunks.items())
         under_way: dict[Future[Any], int] = {}
         try:
@@ -54,6 +55,8 @@ def evaluate(
                     return
                 for future in _completed(client, list(under_way)):
                     yield under_way.pop(future), _result(future)
+        except (CommClosedError, distributed.CancelledError) as error:
+            raise PrsError(f"cluster: it went away, or cancelled the sweep ({short(error)}); run again") from error
         finally:
             with suppress(OSError):  # the cluster may be gone
                 client.cancel(list(under_way))
@@ -78,14 +81,13 @@ def _client(cluster: Client | str | Any) -> Iterator[Client]:
             raise PrsError("cluster: found an asynchronous client, expected one made without asynchronous=True")
         yield cluster
         return
-    address = cluster if isinstance(cluster, str) else getattr(cluster, "scheduler_address", None)
-    if not isinstance(address, str):
+    if not isinstance(cluster, str) and not hasattr(cluster, "scheduler_address"):
         expected = "expected a client or cluster of Dask, or the address of its scheduler such as tcp://host:8786"
         raise PrsError(f"cluster: found {cluster!r:.60}, {expected}")
     try:
-        client = Client(address, set_as_default=False)
+        client = Client(cluster, set_as_default=False)
     except (OSError, ValueError) as error:
-        raise PrsError(f"cluster: no scheduler of Dask answers at '{address}' ({error})") from error
+        raise PrsError(f"cluster: no scheduler of Dask answers at '{cluster}' ({error})") from error
     with client:
         yield client
 
@@ -95,14 +97,19 @@ def _on_workers(client: Client, plan: Plan) -> Iterator[str]:
     """The name under which every worker has the plan, present and future ones."""
     name = f"prs-model-sweep-{uuid4().hex}"
     try:
-        client.register_plugin(_PlanOnWorker(plan), name=name)
-    except ImportError as error:
-        raise PrsError(f"cluster: its workers cannot load the sweep ({error}); install the same prs-model") from error
-    try:
+        _register(client, plan, name)
         yield name
     finally:
-        with suppress(OSError):  # the cluster may be gone
+        with suppress(OSError, KeyError):  # the cluster may be gone, or no worker have it
             client.unregister_worker_plugin(name)
+
+
+def _register(client: Client, plan: Plan, name: str) -> None:
+    try:
+        client.register_plugin(_PlanOnWorker(plan), name=name)
+    except Exception as error:  # whatever a worker without the same packages makes of it
+        remedy = "install the same prs-model, and what it needs, on every worker"
+        raise PrsError(f"cluster: its workers cannot load the sweep ({short(error)}); {remedy}") from error
 
 
 def _most_under_way(client: Client) -> int:
@@ -115,13 +122,12 @@ def _completed(client: Client, futures: list[Future[Any]]) -> set[Future[Any]]:
     """Those that are ready, at least one."""
     while True:
         try:
-            done: set[Future[Any]] = distributed.wait(futures, timeout=PATIENCE, return_when="FIRST_COMPLETED").done
+            with client.as_current():
+                done: set[Future[Any]] = distributed.wait(futures, timeout=PATIENCE, return_when="FIRST_COMPLETED").done
             return done
         except distributed.TimeoutError:
             if not client.nthreads():
                 raise PrsError(f"cluster: it had no workers for {PATIENCE:g} s; start some, and run again") from None
-        except distributed.CancelledError as error:
-            raise PrsError(f"cluster: it went away or cancelled the sweep ({error}); run again") from error
 
 
 def _result(future: Future[Any]) -> Block:

@@ -146,7 +146,7 @@ class Store:
                 if (header["run"], header["poses"]) != (fingerprint(self.run), list(span)):
                     raise ValueError("it is of another sweep or of other poses")
                 return {name: _array(file, name) for name in names or header["arrays"]}
-        except FileNotFoundError:
+        except (FileNotFoundError, MemoryError):
             raise
         except Exception as error:  # whatever zip, numpy or json make of damaged bytes
             raise PrsError(f"{path}: damaged ({short(error) or type(error).__name__})") from error
@@ -191,7 +191,7 @@ def _check_own(folder: Path) -> None:
 
 def _begun(folder: Path, run: str, shape: tuple[int, ...]) -> Store:
     """What the folder has of the run, rid of what a killed process left half-written; else its beginning."""
-    for half_written in folder.glob(".*.npz.*"):
+    for half_written in (*folder.glob(".*.npz.*"), *folder.glob(f".{RUN}.*")):
         half_written.unlink()
     path = folder / RUN
     if path.exists():

@@ -1,5 +1,6 @@
 """Pieces on several worker processes: the same results, whoever dies on the way."""
 
+import importlib
 import os
 import signal
 from collections.abc import Iterator
@@ -71,6 +72,13 @@ def test_a_run_begun_here_is_completed_there(client: distributed.Client, tmp_pat
         assert len(evaluated(plan.journal)) == len(store.chunks) - 2
 
 
+def plugins_of(client: distributed.Client) -> list[str]:
+    """The plug-ins that workers have, and that new ones would get."""
+    there = client.run(lambda dask_worker: list(dask_worker.plugins))
+    coming = client.run_on_scheduler(lambda dask_scheduler: list(dask_scheduler.worker_plugins))
+    return [*coming, *(name for names in there.values() for name in names)]
+
+
 @dataclass(frozen=True)
 class Failing:
     """Fails in the way asked for."""
@@ -86,8 +94,7 @@ class Failing:
 def test_what_a_pose_raises_arrives_and_the_cluster_is_clean(client: distributed.Client, tmp_path: Path) -> None:
     with pytest.raises(PrsError, match="they cannot be had"):
         list(clusters.evaluate(client, Failing("raises"), {0: (0, 10), 1: (10, 20)}))
-    plugins = client.run(lambda dask_worker: list(dask_worker.plugins))
-    assert not any("sweep" in name for names in plugins.values() for name in names)
+    assert not any("sweep" in name for name in plugins_of(client))
 
 
 def test_what_is_no_cluster_is_told() -> None:
@@ -107,6 +114,17 @@ def test_a_cluster_without_workers_is_told(monkeypatch: pytest.MonkeyPatch) -> N
         pytest.raises(PrsError, match=r"it had no workers for 0\.2 s"),
     ):
         list(clusters.evaluate(cluster, plan, {0: (0, 1)}))
+
+
+def test_workers_without_the_program_are_told(
+    client: distributed.Client, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "only_here.py").write_text("class Plan:\n    def evaluate(self, start, stop):\n        return {}\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    plan = importlib.import_module("only_here").Plan()
+    with pytest.raises(PrsError, match=r"cannot load the sweep .*only_here.*install the same prs-model"):
+        list(clusters.evaluate(client, plan, {0: (0, 10)}))
+    assert not any("sweep" in name for name in plugins_of(client))
 
 
 def test_memory_does_not_grow_with_the_number_of_pieces(client: distributed.Client, tmp_path: Path) -> None:
