@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
+from ..errors import PrsError
 
 
 def flexibility_form(stiffness: FloatArray, contact: IntArray) -> FloatArray:
@@ -43,14 +44,20 @@ def force_stiffness(form: FloatArray, rest: FloatArray, contact: IntArray) -> Fl
     return np.where(both, form, np.where(neither, rest, 0.0))
 
 
-def positive_mean(matrices: FloatArray) -> Callable[[FloatArray], FloatArray]:
+def positive_mean(matrices: FloatArray, contact: str) -> Callable[[FloatArray], FloatArray]:
     """A function of weights (..., s) that sum to one: exp(sum_k w_k log A_k) of positive definite matrices (s, n, n).
 
-    Positive definite even where weights are negative, and the same for A as for its inverse.
+    Positive definite even where weights are negative, and the same for A as for its inverse. Raises PrsError, naming
+    the contact, where a matrix is not positive definite to working precision.
     """
-    size = np.sqrt(np.diagonal(matrices, axis1=1, axis2=2).mean(axis=0))
+    size = np.sqrt(np.maximum(np.diagonal(matrices, axis1=1, axis2=2).mean(axis=0), 0.0))
     scale = np.outer(size, size)
-    values, vectors = np.linalg.eigh(matrices / scale)
+    values, vectors = np.linalg.eigh(matrices / scale) if size.all() else (np.zeros(1), matrices)
+    if np.min(values, initial=1.0) <= 0.0:
+        raise PrsError(
+            f"{contact}: found a flexibility that is not positive definite, lost in round-off; expected a joint about "
+            "as stiff as the part: check its stiffness, units and stiffness_factor, or reduce by another method"
+        )
     logarithms = (vectors * np.log(values)[:, None, :]) @ vectors.swapaxes(1, 2)
 
     def mean(weights: FloatArray) -> FloatArray:

@@ -202,7 +202,8 @@ class TravellingElement:
 
     @cached_property
     def _flexibility(self) -> Callable[[FloatArray], FloatArray]:
-        return positive_mean(self._forms[:, self._contact[:, None], self._contact])
+        contact = f"{self.name}, whose contact travels with joint {self.joint}"
+        return positive_mean(self._forms[:, self._contact[:, None], self._contact], contact)
 
     def _matrices(self, weights: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Stiffness and mass in force coordinates, and what leads from physical coordinates to these; or stacks."""

@@ -51,3 +51,10 @@ def test_frequencies_are_smooth_in_the_stroke(machine):
     frequencies = np.array([machine.modes(8, x=MIDDLE + slide).frequencies for slide in slides])
     steps = np.diff(frequencies, axis=0) / frequencies[1:]
     assert np.abs(np.diff(steps, axis=0)).max() < 0.1 * np.abs(steps).max()
+
+
+def test_a_joint_too_soft_to_reckon_with_is_told() -> None:
+    """Ten million times softer than described, the drive leaves round-off of the board's own flexibility."""
+    soft = prs.load_machine("head_3prs").replace({"joints.P.stiffness_factor": 1e-7})
+    with pytest.raises(prs.PrsError, match="board, whose contact travels with joint slide_1: found a flexibility"):
+        soft.modes(6)
