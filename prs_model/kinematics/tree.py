@@ -60,6 +60,12 @@ class Tree:
         """Number of joint values n."""
         return len(self.names)
 
+    @property
+    def middle(self) -> FloatArray:
+        """Joint values (n,) half-way between their limits [m, rad], zero where a side has none."""
+        limited = np.isfinite(self.lower) & np.isfinite(self.upper)
+        return np.asarray((np.where(limited, self.lower, 0.0) + np.where(limited, self.upper, 0.0)) / 2.0)
+
     def joint(self, name: str) -> int:
         """Position of a joint in q. Raises UnknownNameError."""
         if name not in self.names:

@@ -6,7 +6,7 @@ eigenvalues are those of
 
     L = Q^T log(Lambda - s) Q,
 
-p x p, symmetric and smooth. An error dL moves no log(lambda - s) by more than ||dL|| (Weyl): all frequencies have the same
+p x p, symmetric and smooth. An error dL moves no log(lambda - s) by more than ||dL|| (Weyl): all frequencies have one
 bound of their relative error.
 
 How many eigenvalues lie below a level l does not depend on that choice. For any shapes V, fixed in the bodies' axes,

@@ -1,7 +1,7 @@
 """Frequencies, and what comes with them, from matrices of the smooth frame interpolated between nodes.
 
-At each pose the interpolated L (see `frames`) is diagonalised; the interpolated Z counts the eigenvalues below the level,
-so that a pose where another number of modes than p lies there, or one too near the level to tell, is told.
+At each pose the interpolated L (see `frames`) is diagonalised. The interpolated Z counts the eigenvalues below the
+level, so that a pose where another number of modes than p lies there, or one too near the level to tell, is told.
 """
 
 from __future__ import annotations

@@ -81,13 +81,13 @@ class Plan:
         codes = np.zeros(stop - start, dtype=np.int16)
         if found.joints:
             tree, joints = self.machine.kinematics.tree, list(found.joints)
-            q = values[found.parts["joints"]].T
-            near = ((q < tree.lower[joints] + _NEAR_LIMIT) | (q > tree.upper[joints] - _NEAR_LIMIT)).any(axis=1)
-            doubtful = np.flatnonzero(near)
+            q = np.tile(tree.middle, (stop - start, 1))
+            q[:, joints] = values[found.parts["joints"]].T
+            within = np.minimum(np.abs(q - tree.lower), np.abs(tree.upper - q)).min(axis=1)
+            doubtful = np.flatnonzero(within < _NEAR_LIMIT)
             if doubtful.size:
-                poses = self.poses.block(start, stop)[doubtful]
-                exact = self.machine.kinematics.solve_batch(poses).q
-                codes[doubtful] = reason_codes(self.machine.kinematics.reach, exact)
+                q[doubtful] = self.machine.kinematics.solve_batch(self.poses.block(start, stop)[doubtful]).q
+            codes = reason_codes(self.machine.kinematics.reach, q)
         return codes
 
     def _solve(self, block: Block, some: Any, start: int) -> None:

@@ -30,7 +30,7 @@ _log = logging.getLogger("prs_model")
 _FEWEST = 400  # poses that are worth an interpolation
 _EXTRA = 9  # modes above those asked for, among which a gap is sought
 _LEAST_GAP = 1.04  # ratio of eigenvalues above and below it
-_GOOD_GAP = 1.3
+_GOOD_GAP = 1.1
 _LEAST_ALIGNMENT = 0.3
 _LINE = (17, 33, 65, 129)  # nodes of the lines on which convergence is tried
 _ENLARGED = 1.2  # more nodes along an axis whose tail is too long
@@ -185,10 +185,9 @@ class _Planner:
     def _in_words(self, found: Interpolation, worst: float) -> str:
         box, frame = found.box, found.frame
         level = "" if frame.level is None else f", below {np.sqrt(frame.level) / (2.0 * np.pi):.1f} Hz"
-        return (
-            f"{len(box.solved)} nodes ({' x '.join(map(str, box.shape))}), {frame.size} modes followed together{level}; "
-            f"largest error at {_HELD_OUT} poses solved exactly {worst / 2.0:.1e}"
-        )
+        nodes = f"{len(box.solved)} nodes ({' x '.join(map(str, box.shape))})"
+        checked = f"largest error at {_HELD_OUT} poses solved exactly {worst / 2.0:.1e}"
+        return f"{nodes}, {frame.size} modes followed together{level}; {checked}"
 
 
 def _kept(solved: Solved) -> Solved:
