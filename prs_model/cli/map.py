@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
-
-import numpy as np
+from typing import Any
 
 from ..errors import PrsError
 from ..machine import Machine
@@ -19,10 +16,7 @@ from .grids import grid_from
 from .pose_list import poses_from_file
 from .progress import bar
 from .table import table
-from .values import assignment, dimension_of, positive, unit_of
-
-if TYPE_CHECKING:
-    import xarray
+from .values import assignment, dimension_of, positive
 
 NAME = "map"
 HELP = "natural frequencies, compliance and tracked modes over the workspace, certified"
@@ -82,6 +76,7 @@ def run(options: argparse.Namespace) -> dict[str, Any]:
     from ..sweep.files import PICTURES, check_file, save
     from ..sweep.picture import check_drawing
     from ..sweep.request import Request
+    from ..sweep.summary import summary
 
     band = None if options.band is None else tuple(options.band)
     quantities = tuple(dict.fromkeys(["frequency", *options.quantity]))
@@ -123,51 +118,6 @@ def show(outcome: dict[str, Any]) -> str:
     lines += [f"{each['poses']:,} poses: {each['reason']}" for each in outcome["unreachable"]]
     lines += ["", *(f"{name.replace('_', ' ')}: {value}" for name, value in outcome["certificate"].items())]
     return "\n".join([*lines, *(f"written to {file}" for file in outcome["files"])])
-
-
-def summary(machine: Machine, data: xarray.Dataset) -> dict[str, Any]:
-    """What a map says in short: the extremes of every mode and where, unreachable poses by reason, the certificate."""
-    kinds = machine.kinematics.task.coordinates
-    frequency = data["frequency"].transpose("mode", ...)
-    reason = data["reason"]
-    sentences = dict(zip(reason.attrs["flag_values"].tolist(), _sentences(reason.attrs), strict=True))
-    counts = dict(zip(*(each.tolist() for each in np.unique(reason.values, return_counts=True)), strict=True))
-    reachable = counts.get(0, 0) > 0
-    return {
-        "machine": machine.name,
-        "poses": int(reason.size),
-        "pose_units": {name: unit_of(kind) for name, kind in kinds.items()},
-        "quantities": data.attrs["quantities"].split(),
-        "modes": [_extremes(frequency[k], machine.pose_names) for k in range(len(frequency))] if reachable else [],
-        "unreachable": [{"reason": sentences[code], "poses": number} for code, number in counts.items() if code != 0],
-        "certificate": {
-            name.removeprefix("certificate_"): value
-            for name, value in data.attrs.items()
-            if name.startswith("certificate_")
-        },
-    }
-
-
-def _sentences(flags: Mapping[str, str]) -> list[str]:
-    return [each.split(": ", 1)[1] for each in flags["flag_sentences"].split("; ")]
-
-
-def _extremes(frequency: xarray.DataArray, names: tuple[str, ...]) -> dict[str, Any]:
-    values = frequency.values
-    low, high = (np.unravel_index(each(values), values.shape) for each in (np.nanargmin, np.nanargmax))
-
-    def at(place: Any) -> dict[str, float]:
-        there = frequency[place]
-        return {name: float(there[name]) for name in names}
-
-    return {
-        "number": int(frequency["mode"]),
-        "lowest_hz": float(values[low]),
-        "lowest_at": at(low),
-        "highest_hz": float(values[high]),
-        "highest_at": at(high),
-        "median_hz": float(np.nanmedian(values)),
-    }
 
 
 def _poses(machine: Machine, options: argparse.Namespace) -> dict[str, Any]:

@@ -41,7 +41,7 @@ class Panel:
         return tuple(int(k) for k in np.unravel_index(flat, self.values.shape))
 
     def value_text(self) -> str:
-        return f"{self.values[self.worst_place()]:.4g} {self.unit}"
+        return f"{self.values[self.worst_place()]:.5g} {self.unit}"
 
     def transposed(self) -> Panel:
         return replace(self, values=self.values.T)

@@ -168,12 +168,14 @@ def _label(axes: Any, lines: Any) -> None:
     """The level of each contour on its longest piece, no two at the same place along it."""
     from matplotlib.patheffects import withStroke
 
+    step = np.min(np.diff(lines.levels), initial=np.inf)
+    digits = 2 + max(1, ceil(np.log10(np.max(np.abs(lines.levels)) / step))) if np.isfinite(step) else 4
     for k, (level, pieces) in enumerate(zip(lines.levels, lines.allsegs, strict=True)):
         longest = max(pieces, key=len, default=())
         if len(longest) > 2:
             x, y = longest[int(len(longest) * ((0.5 + 0.382 * k) % 1.0))]
             halo = [withStroke(linewidth=1.5, foreground="white")]
-            axes.text(x, y, f"{level:.4g}", fontsize=6, ha="center", va="center", path_effects=halo)
+            axes.text(x, y, f"{level:.{digits}g}", fontsize=6, ha="center", va="center", path_effects=halo)
 
 
 def _curve(figure: Any, axes: Any, data: xarray.Dataset, panel: Panel) -> None:
