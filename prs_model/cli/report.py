@@ -23,6 +23,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     pose_argument.add_poses(parser, "the reference pose")
     parser.add_argument("-n", "--count", type=positive, default=8, help="how many modes are shown (default 8)")
     damping_argument.add_damping(parser)
+    parser.add_argument("--map", action="store_true", help="also a map of the frequencies over the workspace")
     machine_argument.add_settings(parser)
 
 
@@ -35,7 +36,7 @@ def run(options: argparse.Namespace) -> dict[str, Any]:
     check_folder(options.output)
     machine = machine_argument.changed(options)
     poses = pose_argument.poses_of(machine, options) or [{}]
-    files = write_report(machine, options.output, poses, options.count, damping, command_line())
+    files = write_report(machine, options.output, poses, options.count, damping, command_line(), options.map)
     return {"machine": machine.name, "page": str(files[0]), "files": [str(file) for file in files]}
 
 

@@ -53,6 +53,8 @@ class Content:
     warnings: tuple[str, ...]
     published: dict[str, tuple[float, ...]]
     command: str
+    map: Figure | None = None
+    map_files: tuple[str, ...] = ()
 
 
 def page(content: Content, folder: Path) -> str:
@@ -70,6 +72,7 @@ def page(content: Content, folder: Path) -> str:
             scripts=[(_ASSETS / name).read_text(encoding="utf-8") for name in _SCRIPTS],
             data=_script_safe(json.dumps(_data(content.poses), separators=(",", ":"))),
             image=lambda pose, name: _image(folder / pose.study.folder / name),
+            map_image=None if content.map is None else _image(folder / f"{content.map.name}.png"),
             workspace=_workspace(content.machine),
             directions=[(each, unit(each, each)) for each in DIRECTIONS],
         )

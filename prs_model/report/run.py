@@ -20,6 +20,7 @@ from .scene import scene_of
 from .sources import entries
 from .still import draw_still
 from .study import Study, study
+from .workspace import workspace_map
 
 if TYPE_CHECKING:
     from ..machine import Machine
@@ -37,12 +38,14 @@ def write_report(
     count: int = 8,
     damping: DampingLike = None,
     command: str = "",
+    with_map: bool = False,
 ) -> tuple[Path, ...]:
     """Write report.html, and beside it figures, tables and animations of each pose [m, rad] in a folder of its own.
 
     poses: coordinates left out take their reference values. count: modes shown. damping: as in Modes.frf, default the
-    machine's own. command: what made the report, for the page. The folder is made if need be; files of the same names
-    are replaced, each whole or not at all, others are left alone. Returns the files, the page first.
+    machine's own. command: what made the report, for the page. with_map: sweep the workspace too.
+    The folder is made if need be; files of the same names are replaced, each whole or not at all, others are left
+    alone. Returns the files, the page first.
     Raises PrsError for a folder that cannot be written to, UnreachablePoseError, or MissingExtraError (extra `report`).
     """
     folder = Path(folder)
@@ -55,6 +58,7 @@ def write_report(
     outside = [f"pose {each.text} is {said}" for each in studies for said in machine.outside_workspace(each.pose)]
     standing = (*machine.loose_bodies(), *machine.wide_joints(), *said)
     made = tuple(_pose(each, studies[0], folder) for each in studies)
+    drawn = workspace_map(machine, folder, len(studies[0].modes.frequencies)) if with_map else (None, ())
     content = Content(
         machine=machine,
         poses=made,
@@ -65,6 +69,8 @@ def write_report(
         warnings=tuple(dict.fromkeys([*warnings, *standing, *outside])),
         published=_published(machine, studies[0]),
         command=command,
+        map=drawn[0],
+        map_files=drawn[1],
     )
     beside = _beside(content, folder)
     text = page(content, folder)
@@ -106,7 +112,7 @@ def _beside(content: Content, folder: Path) -> list[str]:
     """Writes what belongs to no pose; the names of all files but the page."""
     results = {"machine": content.machine.name, "poses": [as_dict(each.study) for each in content.poses]}
     write_text(folder / "results.json", json.dumps(results, indent=1, allow_nan=False) + "\n")
-    names = ["results.json", *write_card(content.parts, content.joints, content.entries, folder)]
+    names = ["results.json", *content.map_files, *write_card(content.parts, content.joints, content.entries, folder)]
     return names + [f"{each.study.folder}/{name}" for each in content.poses for name in each.files]
 
 

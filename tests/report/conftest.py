@@ -15,7 +15,7 @@ def head(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="session")
 def hexapod(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The folder of a report on hexapod, whose second pose is outside its workspace."""
+    """The folder of a report on hexapod, whose second pose is outside its workspace, with a map."""
     return _made(tmp_path_factory, "hexapod", [{}, {"z": 0.0935}], 0.02)
 
 
@@ -23,7 +23,7 @@ def _made(factory: pytest.TempPathFactory, name: str, poses: list[dict[str, floa
     for package in ("matplotlib", "jinja2"):
         pytest.importorskip(package)
     folder = factory.mktemp("report") / name
-    files = prs.write_report(prs.load_machine(name), folder, poses, damping=damping)
+    files = prs.write_report(prs.load_machine(name), folder, poses, damping=damping, with_map=name == "hexapod")
     assert files[0] == folder / "report.html"
     assert {*files} == {path for path in folder.rglob("*") if path.is_file()}
     return folder

@@ -108,3 +108,11 @@ def test_a_machine_that_floats_has_a_report(tmp_path: Path) -> None:
     ratios = results["poses"][0]["damping_ratios"]
     assert ratios[:3] == [None] * 3
     assert 0.0 < ratios[3] < 1.0
+
+
+def test_the_map_says_where_each_mode_is_lowest(hexapod: Path, head: Path) -> None:
+    page = (hexapod / "report.html").read_text(encoding="utf-8")
+    words = page.split('<section id="map">')[1].split("</section>")[0]
+    assert "2821 poses, 0 of them out of reach. Lowest: mode 1 " in words
+    assert {"map.png", "map.svg", "map.csv"} <= {path.name for path in hexapod.iterdir()}
+    assert '<section id="map">' not in (head / "report.html").read_text(encoding="utf-8")
