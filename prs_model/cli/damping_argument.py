@@ -13,7 +13,7 @@ def add_damping(parser: argparse.ArgumentParser) -> None:
         "--damping",
         nargs="+",
         metavar="RATIO",
-        help="modal damping ratio, one or one for each mode; default: as described",
+        help="modal damping ratio, one or one for each mode above 0 Hz; default: as described",
     )
 
 
