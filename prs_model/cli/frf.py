@@ -25,6 +25,7 @@ HELP = "frequency responses, static compliance, where it comes from, and weak mo
 show = frf_text.show
 
 _MOST = 1_000_000
+_NONE = 1e-12  # of the largest part of a mode in a response: round-off
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -153,9 +154,6 @@ def _endless(modes: Modes, damping: Damping, response: FrequencyResponse, pair: 
     part = np.abs(motions[0][row] * motions[1][column])
     moved = undamped & (part > _NONE * part.max())
     return float(modes.frequencies[np.argmax(np.where(moved, part, 0.0))]) if moved.any() else None
-
-
-_NONE = 1e-12  # of the largest part of a mode in a response: round-off
 
 
 def _static(system: System, modes: Modes, response: FrequencyResponse, pairs: list[str]) -> dict[str, Any]:
