@@ -1,11 +1,26 @@
-"""The project as a user installs it, once for all tests that ask for it."""
+"""What tests of several folders ask for: the project as a user installs it, and a browser."""
 
+import os
 import sys
+from collections.abc import Generator
 from pathlib import Path
 
 import pytest
 
+from tests.browser import browser, opened
 from tests.distributions import build, install, run
+
+__all__ = ["browser", "environment", "opened", "wheel"]
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    """With PRS_REQUIRE_BROWSER set, a page that was not looked at is a failure: no check passes by doing nothing."""
+    report = yield
+    if report.skipped and item.get_closest_marker("browser") and os.environ.get("PRS_REQUIRE_BROWSER"):
+        report.outcome = "failed"
+        report.longrepr = f"skipped, though PRS_REQUIRE_BROWSER is set: {report.longreprtext}"
+    return report
 
 
 @pytest.fixture(scope="session")

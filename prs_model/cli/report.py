@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
 from typing import Any
 
 from . import damping_argument, machine_argument, pose_argument
@@ -17,9 +16,7 @@ HELP = "one self-contained page: mode shapes in 3D, frequency responses, weak mo
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The machine, the poses, and where the report goes."""
     pose_argument.add_machine(parser)
-    parser.add_argument(
-        "-o", "--output", type=Path, required=True, metavar="DIR", help="folder of the report, made if need be"
-    )
+    parser.add_argument("-o", "--output", required=True, metavar="DIR", help="folder of the report, made if need be")
     pose_argument.add_poses(parser, "the reference pose")
     parser.add_argument("-n", "--count", type=positive, default=8, help="how many modes are shown (default 8)")
     damping_argument.add_damping(parser)
@@ -33,10 +30,10 @@ def run(options: argparse.Namespace) -> dict[str, Any]:
     from ..report.run import check_folder
 
     damping = damping_argument.damping_of(options)
-    check_folder(options.output)
+    folder = check_folder(options.output, max(len(options.pose), 1))
     machine = machine_argument.changed(options)
     poses = pose_argument.poses_of(machine, options) or [{}]
-    files = write_report(machine, options.output, poses, options.count, damping, command_line(), options.map)
+    files = write_report(machine, folder, poses, options.count, damping, command_line(), options.map)
     return {"machine": machine.name, "page": str(files[0]), "files": [str(file) for file in files]}
 
 

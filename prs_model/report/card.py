@@ -11,6 +11,7 @@ from ..reduction.summary import Summary, summarize
 from ..reduction.travelling import TravellingElement
 
 if TYPE_CHECKING:
+    from ..description import schema
     from ..machine import Machine
     from ..reduction import SuperElement
     from ..reduction.gate import Check
@@ -101,14 +102,13 @@ def _first(element: Element) -> SuperElement:
     return element.elements[0] if isinstance(element, TravellingElement) else element
 
 
-def _law(joint: object) -> Iterator[str]:
+def _law(joint: schema.Joint) -> Iterator[str]:
     """What holds: so many interfaces, so many stages one after the other, a drive."""
-    interfaces, stages = getattr(joint, "interfaces", ()), getattr(joint, "stages", ())
-    if interfaces:
-        yield f"{len(interfaces)} interfaces in parallel"
-    if stages:
-        yield f"{len(stages)} stages in series"
-    if not interfaces and not stages:
-        yield "rigid" if getattr(joint, "rigid", False) else "elastic"
-    if (drive := getattr(joint, "drive", None)) is not None:
-        yield f"drive: {drive.kind.replace('_', ' ')}"
+    if joint.interfaces:
+        yield f"{len(joint.interfaces)} interfaces in parallel"
+    if joint.stages:
+        yield f"{len(joint.stages)} stages in series"
+    if not joint.interfaces and not joint.stages:
+        yield "rigid" if joint.rigid else "elastic"
+    if joint.drive is not None:
+        yield f"drive: {joint.drive.kind.replace('_', ' ')}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,11 +14,16 @@ from ..modes.energy import Energies
 from ..modes.figure_file import write_figure
 from ..modes.mac import mac
 from ..response.picture import matplotlib_figure
-from .study import Study
+from .study import AtRest, Study
+
+if TYPE_CHECKING:
+    from ..response import FrequencyResponse
 
 _HATCHES = ("", "//", "\\\\", "xx", "--", "||", "++", "////", "\\\\\\\\", "xxxx")
 _GREYS = ("#31688e", "#bcd35f", "#440154", "#f4d06f", "#35b779", "#e8e8e8", "#7a5195", "#c9a227", "#8fb8de", "#555555")
 _LINES = ("-", "--", ":")
+_WIDTH = 5.2  # inches: as wide as a phone, so that the letters can be read there
+_LEGEND: dict[str, Any] = {"fontsize": 9, "title_fontsize": 9, "handlelength": 1.8, "columnspacing": 1.4}
 
 
 @dataclass(frozen=True)
@@ -32,17 +37,15 @@ class Figure:
 
 def draw_figures(study: Study, first: Study, folder: Path) -> tuple[Figure, ...]:
     """Draw everything of a pose as SVG and PNG into a folder. first: the pose that shapes are compared with."""
-    drawn = [_energy(study, folder, *each) for each in _energies(study)]
-    drawn += [_weak_energy(study, folder, *each) for each in _energies(study)]
-    if study.at_rest is not None:
-        drawn.insert(0, _flexibility(study, folder))
+    energies = ("kinetic", study.kinetic), ("strain", study.strain)
+    drawn = []
     if study.response is not None:
-        drawn.insert(0, _frf(study, folder))
+        drawn.append(_frf(study.response, folder))
+    if study.at_rest is not None:
+        drawn.append(_flexibility(study.at_rest, folder))
+    drawn += [_energy(study, folder, *each) for each in energies]
+    drawn += [_weak_energy(study, folder, *each) for each in energies]
     return (*drawn, _mac(study, first, folder))
-
-
-def _energies(study: Study) -> tuple[tuple[str, Energies], ...]:
-    return ("kinetic", study.modes.kinetic_energy()), ("strain", study.modes.strain_energy())
 
 
 def _save(figure: Any, folder: Path, drawn: Figure) -> Figure:
@@ -53,11 +56,9 @@ def _save(figure: Any, folder: Path, drawn: Figure) -> Figure:
     return drawn
 
 
-def _frf(study: Study, folder: Path) -> Figure:
+def _frf(response: FrequencyResponse, folder: Path) -> Figure:
     """Figure 11 of the paper: magnitude and phase along u, v, w."""
-    response = study.response
-    assert response is not None
-    figure = matplotlib_figure()(figsize=(7.2, 4.6), layout="constrained")
+    figure = matplotlib_figure()(figsize=(_WIDTH, 4.4), layout="constrained")
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
     peaks = []
     for axis, line in zip("uvw", _LINES, strict=True):
@@ -67,7 +68,7 @@ def _frf(study: Study, folder: Path) -> Figure:
         top = int(np.argmax(np.abs(curve)))
         peaks.append(f"along {axis} {1e6 * abs(curve[top]):.3g} um/N at {response.frequencies[top]:.1f} Hz")
     upper.set_ylabel("receptance / (µm/N)")
-    upper.legend(title="response and force along", ncols=3, fontsize=8, title_fontsize=8)
+    figure.legend(title="response and force along", ncols=3, loc="outside lower center", **_LEGEND)
     lower.set(xlabel="frequency / Hz", ylabel="phase / deg", ylim=(-190, 190), yticks=(-180, -90, 0, 90, 180))
     for axes in (upper, lower):
         axes.grid(True, alpha=0.3)
@@ -75,17 +76,17 @@ def _frf(study: Study, folder: Path) -> Figure:
     return _save(figure, folder, Figure("frf", caption, f"{caption} Largest: {'; '.join(peaks)}."))
 
 
-def _flexibility(study: Study, folder: Path) -> Figure:
+def _flexibility(rest: AtRest, folder: Path) -> Figure:
     """Figure 15 of the paper: what each mode gives to the static compliance."""
-    assert study.at_rest is not None
-    shares = 100.0 * study.at_rest.shares[:, :3]
-    figure = matplotlib_figure()(figsize=(7.2, 3.2), layout="constrained")
+    shares = 100.0 * rest.shares[:, :3]
+    figure = matplotlib_figure()(figsize=(_WIDTH, 3.4), layout="constrained")
     axes = figure.subplots()
     numbers = np.arange(1.0, len(shares) + 1)
     for k, direction in enumerate("uvw"):
         _bars(axes, numbers + 0.27 * (k - 1), shares[:, k], 0.25, k, f"along {direction}")
     axes.set(xlabel="mode", ylabel="share of the static compliance / %", xticks=numbers)
-    axes.legend(fontsize=8)
+    axes.margins(y=0.08)
+    figure.legend(ncols=3, loc="outside lower center", **_LEGEND)
     tops = [
         f"along {d} mode {np.argmax(shares[:, k]) + 1} with {shares[:, k].max():.1f} %" for k, d in enumerate("uvw")
     ]
@@ -97,14 +98,15 @@ def _energy(study: Study, folder: Path, kind: str, energy: Energies) -> Figure:
     """All modes, like parts together."""
     groups = _by_kind(energy, study.modes.system.stems)
     count = len(study.modes.frequencies)
-    figure = matplotlib_figure()(figsize=(7.2, 3.4), layout="constrained")
+    figure = matplotlib_figure()(figsize=(_WIDTH, 3.9), layout="constrained")
     axes = figure.subplots()
     numbers, base = np.arange(1.0, count + 1), np.zeros(count)
     for k, (name, share) in enumerate(groups.items()):
         _bars(axes, numbers, 100.0 * share, 0.7, k, name, base)
         base = base + 100.0 * share
-    axes.set(xlabel="mode", ylabel=f"share of the {kind} energy / %", xticks=numbers, ylim=(0.0, 100.0))
-    _legend(axes)
+    axes.set(xlabel="mode", ylabel=f"share of the {kind} energy / %", xticks=numbers)
+    axes.set(ylim=(0.0, 104.0), yticks=range(0, 101, 20))
+    figure.legend(ncols=5, loc="outside lower center", **_LEGEND)
     tops = [f"mode {k + 1} {max(groups, key=lambda name: groups[name][k])}" for k in range(count)]
     caption = f"Where the {kind} energy of each mode is, like parts together."
     return _save(figure, folder, Figure(f"{kind}_energy", caption, f"{caption} Most of it in: {', '.join(tops)}."))
@@ -113,7 +115,7 @@ def _energy(study: Study, folder: Path, kind: str, energy: Energies) -> Figure:
 def _weak_energy(study: Study, folder: Path, kind: str, energy: Energies) -> Figure:
     """Figures 16 and 17 of the paper: the first two modes, limb by limb."""
     count = min(2, len(study.modes.frequencies))
-    figure = matplotlib_figure()(figsize=(7.2, 3.4), layout="constrained")
+    figure = matplotlib_figure()(figsize=(_WIDTH, 3.9), layout="constrained")
     panels = figure.subplots(1, count, squeeze=False, sharey=True)[0]
     limbs, stems = study.modes.system.limbs, study.modes.system.stems
     places = list(dict.fromkeys(limbs.get(name, name) for name in energy))
@@ -127,9 +129,10 @@ def _weak_energy(study: Study, folder: Path, kind: str, energy: Energies) -> Fig
             _bars(axes, np.arange(float(len(places))), row, 0.7, k, name, base)
             base = base + row
         axes.set_title(f"mode {mode + 1}: {study.modes.frequencies[mode]:.1f} Hz", fontsize=9)
-        axes.set_xticks(range(len(places)), places, rotation=30, ha="right", fontsize=8)
+        axes.set_xticks(range(len(places)), places, rotation=30, ha="right", fontsize=9)
+        axes.margins(y=0.08)
     panels[0].set_ylabel(f"share of the {kind} energy / %")
-    _legend(panels[-1])
+    figure.legend(*panels[0].get_legend_handles_labels(), ncols=5, loc="outside lower center", **_LEGEND)
     caption = f"Distribution of the {kind} energy of the first modes over limbs and parts."
     return _save(figure, folder, Figure(f"{kind}_energy_by_limb", caption, f"{caption} The numbers are in the tables."))
 
@@ -159,10 +162,6 @@ def _bars(
     axes.bar(places, heights, width, bottom=base, label=label, **style)
     axes.grid(True, axis="y", alpha=0.3)
     axes.set_axisbelow(True)
-
-
-def _legend(axes: Any) -> None:
-    axes.legend(fontsize=8, loc="center left", bbox_to_anchor=(1.0, 0.5))
 
 
 def _by_kind(energy: Energies, stems: Mapping[str, str]) -> Energies:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..description.units import SI, Dimension
 from ..errors import PrsError
 from ..modes.mac import mac
 from ..reduction.storage import whole
@@ -19,22 +20,25 @@ from ..response.files import write_csv
 from ..response.quantity import DIRECTIONS, unit
 
 if TYPE_CHECKING:
+    from ..modes.energy import Energies
     from .card import Joint, Part
     from .sources import Entry
     from .study import AtRest, Study
 
 Rows = Iterable[Sequence[object]]
 
+_AXES = tuple((each[-1], len(each) > 1) for each in DIRECTIONS)
+
 
 def write_tables(study: Study, first: Study, folder: Path) -> tuple[str, ...]:
     """Write the tables of a pose into a folder; their names. first: the pose that shapes are compared with."""
-    modes = study.modes
+    likeness = [["mode of the first pose", *_columns(study, "MAC with mode")], *_numbered(_mac(first, study))]
     tables: dict[str, Rows] = {
         "modes.csv": _modes(study),
-        "kinetic_energy.csv": _by_mode("body", modes.kinetic_energy()),
-        "strain_energy.csv": _by_mode("body or joint", modes.strain_energy()),
+        "kinetic_energy.csv": _energies(study, "body", "kinetic", study.kinetic),
+        "strain_energy.csv": _energies(study, "body or joint", "strain", study.strain),
         "joint_strain_energy.csv": _by_axis(study),
-        "mac.csv": [["mode of the first pose", *_numbers(study)], *_numbered(mac(first.modes, modes).tolist())],
+        "mac.csv": likeness,
     }
     if study.at_rest is not None:
         tables["compliance.csv"] = _compliance(study.at_rest)
@@ -68,20 +72,32 @@ def write_card(
 
 
 def as_dict(study: Study) -> dict[str, Any]:
-    """Everything of a pose but its frequency response, in SI, for JSON."""
+    """Everything of a pose but its frequency response, in the units of `units_of`, for JSON."""
     modes, rest = study.modes, study.at_rest
     return {
         "pose": {name: float(value) for name, value in study.pose.items()},
         "frequencies_hz": modes.frequencies.tolist(),
+        "damping": study.damping.model_dump(mode="json", exclude_none=True),
         "damping_ratios": None if study.ratios is None else _ratios(study),
-        "characters": [str(each) for each in modes.characters()],
-        "kinetic_energy": {name: share.tolist() for name, share in modes.kinetic_energy().items()},
-        "strain_energy": {name: share.tolist() for name, share in modes.strain_energy().items()},
-        "joint_strain_energy": {name: each.T.tolist() for name, each in modes.joint_strain_by_direction().items()},
+        "characters": [str(each) for each in study.characters],
+        "kinetic_energy": {name: share.tolist() for name, share in study.kinetic.items()},
+        "strain_energy": {name: share.tolist() for name, share in study.strain.items()},
+        "joint_strain_energy": {name: each.T.tolist() for name, each in study.joint_strain.items()},
         "static_compliance": None if rest is None else rest.compliance.tolist(),
         "modal_flexibility": None if rest is None else rest.flexibility.tolist(),
         "flexibility_shares": None if rest is None else rest.shares.tolist(),
         "weak_modes": [] if rest is None else [str(each) for each in rest.weak],
+    }
+
+
+def units_of(coordinates: Mapping[str, Dimension]) -> dict[str, Any]:
+    """The units of `as_dict`, by its entries; what is a share has none."""
+    return {
+        "pose": {name: kind.label(SI) for name, kind in coordinates.items()},
+        "directions": list(DIRECTIONS),
+        "damping": {"rayleigh": {"alpha": "1/s", "beta": "s"}, "joints": {"viscous": "s"}},
+        "static_compliance": [[unit(row, column) for column in DIRECTIONS] for row in DIRECTIONS],
+        "modal_flexibility": [unit(each, each) for each in DIRECTIONS],
     }
 
 
@@ -108,8 +124,8 @@ def write_bytes(path: Path, content: bytes) -> None:
 
 def _modes(study: Study) -> Rows:
     ratios = _ratios(study)
-    yield ["mode", "frequency [Hz]", "damping ratio", "what moves", "tool point"]
-    for k, each in enumerate(study.modes.characters()):
+    yield ["mode", "frequency [Hz]", "damping ratio [-]", "what moves", "tool point"]
+    for k, each in enumerate(study.characters):
         yield [k + 1, float(study.modes.frequencies[k]), ratios[k], str(each), each.output]
 
 
@@ -119,33 +135,43 @@ def _ratios(study: Study) -> list[float | None]:
     return [None if np.isnan(each) else each for each in known]
 
 
+def _energies(study: Study, what: str, kind: str, shares: Energies) -> Rows:
+    yield [what, *_columns(study, f"share of {kind} energy in mode")]
+    for name, share in shares.items():
+        yield [name, *share.tolist()]
+
+
 def _by_axis(study: Study) -> Rows:
-    yield ["joint", "axis", *_numbers(study)]
-    for name, shares in study.modes.joint_strain_by_direction().items():
+    yield ["joint", "axis of its frame", *_columns(study, "share of strain energy in mode")]
+    for name, shares in study.joint_strain.items():
         for axis, row in zip(AXES, shares.tolist(), strict=True):
             yield [name, axis, *row]
 
 
 def _compliance(rest: AtRest) -> Rows:
-    yield ["motion", *(f"by a load along or about {each}" for each in DIRECTIONS), "unit by a force", "by a moment"]
-    for each, row in zip(DIRECTIONS, rest.compliance.tolist(), strict=True):
-        yield [each, *row, unit(each, "u"), unit(each, "ru")]
+    """Motions in rows, loads in columns, with their units."""
+    loads = [
+        f"by moment about {axis} [per N m]" if about else f"by force along {axis} [per N]" for axis, about in _AXES
+    ]
+    yield ["motion", *loads]
+    for (axis, about), row in zip(_AXES, rest.compliance.tolist(), strict=True):
+        yield [f"about {axis} [rad]" if about else f"along {axis} [m]", *row]
 
 
 def _flexibility(rest: AtRest) -> Rows:
-    yield ["mode", *(f"{each} [{unit(each, each)}]" for each in DIRECTIONS), *(f"share {each}" for each in DIRECTIONS)]
+    shares = [f"share of the compliance {each} [-]" for each in DIRECTIONS]
+    yield ["mode", *(f"{each} [{unit(each, each)}]" for each in DIRECTIONS), *shares]
     yield from _numbered(np.hstack([rest.flexibility, rest.shares]).tolist())
 
 
-def _by_mode(what: str, shares: dict[str, Any]) -> Rows:
-    count = len(next(iter(shares.values())))
-    yield [what, *(f"mode {k + 1}" for k in range(count))]
-    for name, share in shares.items():
-        yield [name, *share.tolist()]
+def _mac(first: Study, study: Study) -> list[list[float]]:
+    found: list[list[float]] = mac(first.modes, study.modes).tolist()
+    return found
 
 
-def _numbers(study: Study) -> list[str]:
-    return [f"mode {k + 1}" for k in range(len(study.modes.frequencies))]
+def _columns(study: Study, what: str) -> list[str]:
+    """A heading for each mode, of numbers without unit."""
+    return [f"{what} {k + 1} [-]" for k in range(len(study.modes.frequencies))]
 
 
 def _numbered(rows: list[list[float]]) -> Rows:

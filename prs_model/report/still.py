@@ -19,6 +19,7 @@ from .study import Study
 _YAW, _PITCH = np.radians(-35.0), np.radians(20.0)
 _AXIS = 0.08  # length of u, v and w drawn, over the machine's size
 _FINE = 0.06  # longest side of what is painted, likewise: large faces are in front of some and behind others
+_COLUMNS = 4  # at most
 _WIDTH, _TITLE, _BAR = 2.6, 0.45, 0.5  # inches: of a panel, above it, and below the last one
 _LIGHT = np.array([0.3, 0.5, 0.81])
 
@@ -29,8 +30,8 @@ def draw_still(study: Study, scene: Scene, path: Path) -> None:
     For PNG: as vectors, so many triangles take tens of megabytes.
     """
     count = len(study.modes.frequencies)
-    columns = min(count, 4)
-    rows = ceil(count / columns)
+    rows = ceil(count / _COLUMNS)
+    columns = ceil(count / rows)
     panel = _WIDTH * _proportion(scene)
     width, height = _WIDTH * columns, (panel + _TITLE) * rows + _BAR
     figure = matplotlib_figure()(figsize=(width, height))
@@ -38,7 +39,7 @@ def draw_still(study: Study, scene: Scene, path: Path) -> None:
     panels = figure.subplots(rows, columns, squeeze=False).ravel()
     for axes in panels:
         axes.set_axis_off()
-    for mode, (axes, character) in enumerate(zip(panels, study.modes.characters(), strict=False)):
+    for mode, (axes, character) in enumerate(zip(panels, study.characters, strict=False)):
         _draw(axes, scene, mode)
         title = f"{mode + 1}: {study.modes.frequencies[mode]:.1f} Hz\n{character.group} {character.motion}"
         axes.set_title(title, fontsize=8)

@@ -18,7 +18,11 @@ if TYPE_CHECKING:
     from ..description.schema import Damping
     from ..machine import Machine
     from ..modes import Modes
+    from ..modes.character import Character
+    from ..modes.energy import Energies
     from ..response import DampingLike, FrequencyResponse, WeakMode
+
+_SAME = 1e-9  # m or rad between poses that are one
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,13 +41,19 @@ class Study:
     """One pose [m, rad], numbered from 1: its modes, their damping ratios (k,), how the end-reference point answers.
 
     at_rest and response are None where the machine can move without straining anything, or nothing oscillates.
-    ratios are None where joints damp, so that the modes are complex.
+    ratios are None where joints damp, so that the modes are complex. kinetic, strain, joint_strain: shares of each
+    mode's energy, as Modes.kinetic_energy, strain_energy and joint_strain_by_direction give them.
     """
 
     number: int
     pose: Mapping[str, float]
     text: str
+    is_reference: bool
     modes: Modes
+    characters: tuple[Character, ...]
+    kinetic: Energies
+    strain: Energies
+    joint_strain: Energies
     damping: Damping
     ratios: FloatArray | None
     at_rest: AtRest | None
@@ -68,7 +78,12 @@ def study(machine: Machine, pose: Mapping[str, float], number: int, count: int, 
         number=number,
         pose=configuration.pose,
         text=pose_text(configuration.pose, machine.kinematics.task.coordinates) or "the only pose",
+        is_reference=all(abs(configuration.pose[k] - value) < _SAME for k, value in machine.reference_pose.items()),
         modes=modes,
+        characters=modes.characters(),
+        kinetic=modes.kinetic_energy(),
+        strain=modes.strain_energy(),
+        joint_strain=modes.joint_strain_by_direction(),
         damping=model,
         ratios=modal_ratios(model, modes.eigenvalues) if is_proportional(model) else None,
         at_rest=_at_rest(modes),

@@ -1,8 +1,7 @@
-"""A page served from a thread, as Ctrl-C would find it in the command, and a browser without a window."""
+"""A page served from a thread, as Ctrl-C would find it in the command."""
 
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
-from shutil import which
 from threading import Event, Thread
 from typing import Any
 
@@ -13,8 +12,6 @@ from prs_model.explore.server import serving
 from prs_model.explore.session import Session
 
 Serve = Callable[..., Session]
-
-_WITHOUT_GPU = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 
 
 @pytest.fixture
@@ -36,16 +33,3 @@ def _running(machine: prs.Machine, **how: Any) -> Iterator[Session]:
         finally:
             stop.set()
             thread.join()
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    """Chromium, driven by playwright, of which one runs at a time."""
-    playwright = pytest.importorskip("playwright.sync_api", reason="drives the browser")
-    path = which("chromium") or which("chromium-browser") or which("google-chrome")
-    if path is None:
-        pytest.skip("no Chromium is installed")
-    with playwright.sync_playwright() as driver:
-        running = driver.chromium.launch(executable_path=path, args=_WITHOUT_GPU)
-        yield running
-        running.close()

@@ -1,6 +1,6 @@
 """The page in a browser: what it shows is what the library finds."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from io import BytesIO
 from time import monotonic, sleep
 from typing import Any
@@ -10,6 +10,7 @@ import pytest
 
 import prs_model as prs
 from prs_model.explore.session import Session
+from tests.browser import Opened
 from tests.explore.conftest import Serve
 
 _PATIENCE = 60.0  # s, for software rendering on a busy computer
@@ -17,30 +18,20 @@ _PATIENCE = 60.0  # s, for software rendering on a busy computer
 pytestmark = pytest.mark.browser
 
 
-@pytest.fixture
-def opened(serve: Serve, browser: Any) -> Iterator[Callable[..., tuple[Any, Session]]]:
-    """A machine's page in a small window; at the end there must have been no error and no request beyond loopback."""
-    wrong: list[str] = []
-    asked: list[str] = []
-    pages: list[Any] = []
+Page = tuple[Any, Session]
 
-    def show(machine: prs.Machine, **how: Any) -> tuple[Any, Session]:
+
+@pytest.fixture
+def explored(serve: Serve, opened: Opened) -> Callable[..., Page]:
+    """A machine's page in a small window."""
+
+    def show(machine: prs.Machine, width: int = 900, **how: Any) -> Page:
         session = serve(machine, **how)
-        page = browser.new_page(viewport={"width": 900, "height": 700})
-        page.set_default_timeout(1e3 * _PATIENCE)
-        page.on("console", lambda message: wrong.append(message.text) if message.type == "error" else None)
-        page.on("pageerror", lambda error: wrong.append(str(error)))
-        page.on("request", lambda request: asked.append(request.url))
-        page.goto(session.address)
+        page = opened(session.address, width, 700)
         page.wait_for_selector("td.frequency")
-        pages.append(page)
         return page, session
 
-    yield show
-    for page in pages:
-        page.close()
-    assert wrong == []
-    assert [url for url in asked if not url.startswith(("http://127.0.0.1", "data:", "blob:"))] == []
+    return show
 
 
 def shown(page: Any) -> np.ndarray:
@@ -60,9 +51,9 @@ def wait_for(condition: Callable[[], bool]) -> None:
         sleep(0.05)
 
 
-def test_the_frequencies_follow_the_pose_slider(opened: Callable[..., tuple[Any, Session]]) -> None:
+def test_the_frequencies_follow_the_pose_slider(explored: Callable[..., Page]) -> None:
     machine = prs.load_machine("hexapod")
-    page, session = opened(machine)
+    page, session = explored(machine)
     assert shown(page) == pytest.approx(machine.modes(8).frequencies, abs=6e-4)
     slider(page, "z [mm]").press("ArrowRight")
     wait_for(lambda: session.solved > 1)
@@ -75,9 +66,9 @@ def test_the_frequencies_follow_the_pose_slider(opened: Callable[..., tuple[Any,
     wait_for(lambda: np.allclose(shown(page), machine.modes(8).frequencies, rtol=0.0, atol=6e-4))
 
 
-def test_a_stiffer_joint_and_back(opened: Callable[..., tuple[Any, Session]]) -> None:
+def test_a_stiffer_joint_and_back(explored: Callable[..., Page]) -> None:
     machine = prs.load_machine("hexapod")
-    page, session = opened(machine)
+    page, session = explored(machine)
     assert list(session.page.factors) == ["P"]  # U and S are rigid
     slider(page, "P ×").press("ArrowRight")
     wait_for(lambda: session.solved > 1)
@@ -108,8 +99,8 @@ def still_picture(page: Any) -> np.ndarray:
     return pictures[-1]
 
 
-def test_the_mode_is_animated_and_paused(opened: Callable[..., tuple[Any, Session]]) -> None:
-    page, session = opened(prs.load_machine("hexapod"))
+def test_the_mode_is_animated_and_paused(explored: Callable[..., Page]) -> None:
+    page, session = explored(prs.load_machine("hexapod"))
     first = picture(page)
     wait_for(lambda: not np.array_equal(picture(page), first))
     page.get_by_label("animate").uncheck()

@@ -39,6 +39,31 @@ def test_results_hold_all_poses(hexapod: Path) -> None:
     assert results["poses"][0]["weak_modes"] == [str(each) for each in first.weak_modes()]
 
 
+def test_every_number_has_its_unit(hexapod: Path) -> None:
+    results = json.loads((hexapod / "results.json").read_text(encoding="utf-8"))
+    units = results["units"]
+    assert units["pose"] == {"x": "m", "y": "m", "z": "m", "rx": "rad", "ry": "rad", "rz": "rad"}
+    assert units["static_compliance"][3] == ["rad/N"] * 3 + ["rad/(N m)"] * 3
+    assert results["poses"][0]["damping"] == {"modal": 0.02, "joints": {}}
+    heads = {path.name: table(path)[0] for path in (hexapod / "pose_1").glob("*.csv")}
+    assert heads["compliance.csv"][1] == "by force along u [per N]"
+    assert heads["compliance.csv"][6] == "by moment about w [per N m]"
+    assert [row[0] for row in table(hexapod / "pose_1" / "compliance.csv")[1:]][2:4] == ["along w [m]", "about u [rad]"]
+    for name in ("kinetic_energy.csv", "strain_energy.csv", "joint_strain_energy.csv", "mac.csv"):
+        assert heads[name][-1].endswith("in mode 6 [-]" if "energy" in name else "with mode 6 [-]")
+
+
+def test_what_others_found_stands_beside(head: Path, hexapod: Path) -> None:
+    text = (head / "report.html").read_text(encoding="utf-8")
+    assert "Beside published frequencies, at nutation 0 deg" in text
+    assert "--set reduction.method=craig-bampton" in text  # why the two differ
+    modes = prs.load_machine("head_3prs").modes(8)
+    sums = 100.0 * modes.flexibility_shares()[[5, 6], :2].sum(axis=0)
+    for published, most in (("72.95", f"{sums[0]:.1f} % by 6 and 7"), ("75.45", f"{sums[1]:.1f} % by 6 and 7")):
+        assert re.search(rf"<td class=\"n\">{published}</td>.*{most}</td>", text)
+    assert "tdehaeze/stewart-simscape" in (hexapod / "report.html").read_text(encoding="utf-8")
+
+
 @pytest.mark.parametrize("name", ["head", "hexapod"])
 def test_page_is_alone_and_light(name: str, request: pytest.FixtureRequest) -> None:
     page = request.getfixturevalue(name) / "report.html"
@@ -81,10 +106,74 @@ def test_machine_that_can_move_freely(tmp_path: Path) -> None:
     assert "The machine can move without straining anything" in files[0].read_text(encoding="utf-8")
 
 
+def test_a_smaller_report_leaves_nothing_of_a_larger_one(tmp_path: Path) -> None:
+    pytest.importorskip("jinja2")
+    pytest.importorskip("matplotlib")
+    machine = prs.load_machine("hexapod")
+    prs.write_report(machine, tmp_path, [{}, {"z": 0.091}], 3)
+    (tmp_path / "pose_2" / "my notes.txt").write_text("keep", encoding="utf-8")
+    (tmp_path / "pose_1" / "other.csv").write_text("keep", encoding="utf-8")
+    files = prs.write_report(machine, tmp_path, [{}], 2)
+    others = {tmp_path / "pose_2" / "my notes.txt", tmp_path / "pose_1" / "other.csv"}
+    assert {path for path in tmp_path.rglob("*") if path.is_file()} == {*files, *others}
+
+
+@pytest.mark.parametrize("place", ["prs_model.report.run.page", "prs_model.report.run.write_card"])
+def test_an_interrupted_report_leaves_the_last_one(place: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("jinja2")
+    pytest.importorskip("matplotlib")
+    machine = prs.load_machine("hexapod")
+    prs.write_report(machine, tmp_path, [{"z": 0.091}], 1)
+    before = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
+
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(place, interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        prs.write_report(machine, tmp_path, [{}, {}], 2)
+    assert {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()} == before
+    assert sorted(path.name for path in tmp_path.iterdir() if path.is_dir()) == ["pose_1"]
+
+
+def test_a_page_too_large_for_a_mail_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("jinja2")
+    pytest.importorskip("matplotlib")
+    monkeypatch.setattr("prs_model.report.run._LARGEST", 100_000)
+    with pytest.raises(prs.PrsError, match=r"would take 0\.\d MB \(poses: 1, modes: 2\), expected 10 MB at most"):
+        prs.write_report(prs.load_machine("hexapod"), tmp_path, count=2)
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("folder", "words"),
+    [
+        ("", "found '' as a folder, expected the name of one"),
+        (None, "found None as a folder"),
+        ("taken", r"taken/pose_1: found a file, where the report has a folder"),
+        ("filled", r"filled/report.html: found a folder, where the report has a file"),
+    ],
+)
+def test_a_folder_that_cannot_hold_it(
+    folder: str | None, words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("jinja2")
+    pytest.importorskip("matplotlib")
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "filled" / "report.html").mkdir(parents=True)
+    (tmp_path / "taken").mkdir()
+    (tmp_path / "taken" / "pose_1").write_text("mine", encoding="utf-8")
+    with pytest.raises(prs.PrsError, match=words):
+        prs.write_report(prs.load_machine("hexapod"), folder)  # type: ignore[arg-type]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["filled", "taken"]
+
+
 @pytest.mark.parametrize(
     ("poses", "damping", "words"),
     [
         ([], None, "found no pose"),
+        ({"z": 0.09}, None, r"poses: found {'z': 0.09}, expected a list of them"),
+        ([0.09], None, r"poses: found \[0.09\], expected a list of them"),
         ([{}], 1.5, "found 1.5, expected a ratio below 1"),
         ([{"height": 1.0}], None, "height"),
         ([{"z": 9.0}], None, "z"),

@@ -102,7 +102,9 @@ const Viewer = (() => {
 
     function show(raw) {
       const first = scene === null;
-      scene = { ...raw, points: typed(raw.points, Float32Array), all: typed(raw.moved, Int16Array) };
+      const steps = typed(raw.points, Uint16Array);
+      const points = Float32Array.from(steps, (x, i) => raw.low[i % 3] + raw.step * x);
+      scene = { ...raw, points, all: typed(raw.moved, raw.movedBytes === 1 ? Int8Array : Int16Array) };
       fill(gl.ARRAY_BUFFER, buffers.rest, scene.points);
       fill(gl.ARRAY_BUFFER, buffers.kind, typed(raw.kind, Uint8Array));
       const triangles = typed(raw.triangles, Uint32Array), edges = typed(raw.edges, Uint32Array);
@@ -155,7 +157,7 @@ const Viewer = (() => {
       gl.uniform3fv(at.parts, PARTS.flat());
       gl.uniform1i(at.byPart, state.byPart ? 1 : 0);
       point("rest", buffers.rest, 3, gl.FLOAT, false);
-      point("moved", buffers.moved, 3, gl.SHORT, true);
+      point("moved", buffers.moved, 3, scene.movedBytes === 1 ? gl.BYTE : gl.SHORT, true);
       point("kind", buffers.kind, 1, gl.UNSIGNED_BYTE, false);
       faces(0, scene.freeTriangles, 1);
       lines(0, scene.freeEdges, 0.55);
