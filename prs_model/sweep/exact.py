@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 CHUNK = 48  # configurations assembled at once: 40 MB at 200 coordinates
 
+_SMALLEST, _SHARES = 8, 4  # of a chunk, and chunks of a few poses, so that all cores have some
+
 _T = TypeVar("_T")
 
 
@@ -57,7 +59,8 @@ class Solver:
         found = self.machine.kinematics.solve_batch(poses)
         if np.isnan(found.q).any():
             raise found.errors[int(np.flatnonzero(np.isnan(found.q).any(axis=1))[0])]
-        chunks = [part(found, slice(start, start + CHUNK)) for start in range(0, len(poses), CHUNK)]
+        size = min(CHUNK, max(_SMALLEST, -(-len(poses) // _SHARES)))
+        chunks = [part(found, slice(start, start + size)) for start in range(0, len(poses), size)]
         return pool.map(lambda chunk: what(self.solve(chunk)), chunks)
 
 

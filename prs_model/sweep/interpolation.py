@@ -19,9 +19,9 @@ from . import kernels as plain
 from .frames import Frame
 from .poses import Poses
 from .spectral import Box, Terms, on_grid
+from .symmetry import Symmetry
 
 _POINTS = 512  # of a list, interpolated at once
-_SLAB = 65536  # poses of a grid that are
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,7 +30,7 @@ class Interpolation:
 
     shapes: of the carried quantities at one pose, by name. frame: the modes that are followed together. error: bound of
     the error of log(lambda - shift) anywhere; slack: the same of Z [rad^2/s^2]. joints: those that come near a limit,
-    whose values are interpolated too.
+    whose values are interpolated too. symmetry: of the poses that stand for all others.
     """
 
     box: Box
@@ -41,6 +41,7 @@ class Interpolation:
     error: float
     slack: float
     joints: tuple[int, ...]
+    symmetry: Symmetry | None = None
 
     def values(self, poses: Poses, start: int, stop: int) -> FloatArray:
         """All interpolated values (e, m) at poses start .. stop - 1, poses last."""
@@ -49,7 +50,7 @@ class Interpolation:
             chunks = [self._terms.at(points[k : k + _POINTS]) for k in range(0, len(points), _POINTS)]
             return np.ascontiguousarray(np.concatenate(chunks).T)
         axes = [poses.axes[column] for column in self.box.columns]
-        leading = _leading([len(axis) for axis in axes])
+        leading = _leading([len(axis) for axis in axes], stop - start)
         slab = math.prod(len(axis) for axis in axes[leading:])
         values = np.empty((self.tensor.shape[-1], stop - start))
         for line in range(start // slab, -(-stop // slab)):
@@ -96,6 +97,6 @@ class Interpolation:
         return np.asarray(kernels.negatives(packed, self.frame.size, self.slack) == self.frame.size)
 
 
-def _leading(lengths: Sequence[int]) -> int:
-    """How many of the first coordinates are gone through one by one, so that the others have few enough poses."""
-    return next((k for k in range(len(lengths)) if math.prod(lengths[k:]) <= _SLAB), len(lengths) - 1)
+def _leading(lengths: Sequence[int], wanted: int) -> int:
+    """How many of the first coordinates are gone through one by one, so that no more poses than wanted come at once."""
+    return next((k for k in range(len(lengths)) if math.prod(lengths[k:]) <= wanted), len(lengths) - 1)

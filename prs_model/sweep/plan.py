@@ -21,6 +21,7 @@ from .poses import Poses
 from .quantities import Block, Labels, blank, labels
 from .reasons import reason_codes
 from .request import Request
+from .symmetry import Folded, folded
 
 if TYPE_CHECKING:
     from ..machine import Machine
@@ -45,15 +46,28 @@ class Plan:
         found = self.interpolation
         if found is None:
             return solved_directly(self.machine, self.request, self.poses.block(start, stop), self._labels, 0.0)
-        values = found.values(self.poses, start, stop)
-        block = blank(self.request, self._labels, stop - start) | self._quantities(found, values)
-        block["reason"][:] = self._reasons(found, values, start, stop)
+        first, last, places = self._folded.span(start, stop) if self._folded is not None else (start, stop, None)
+        values = found.values(self.poses if self._folded is None else self._folded.distinct, first, last)
+        quantities = self._quantities(found, values)
         sure = found.complete(values, self.kernels)
+        if places is not None:
+            quantities, sure = {name: each[places] for name, each in quantities.items()}, sure[places]
+            values = values[found.parts["joints"]][:, places]
+        else:
+            values = values[found.parts["joints"]]
+        block = blank(self.request, self._labels, stop - start) | quantities
+        block["reason"][:] = self._reasons(found, values, start, stop)
         block["proof"][:] = INTERPOLATED
         block["bound"] = np.full((stop - start, self.request.n_modes), found.error / 2.0)
         self._solve(block, np.flatnonzero(~sure & (block["reason"] == 0)), start)
         _forget(block, block["reason"] != 0)
         return block
+
+    @cached_property
+    def _folded(self) -> Folded | None:
+        if self.interpolation is None or self.interpolation.symmetry is None:
+            return None
+        return folded(self.interpolation.symmetry, self.poses)
 
     def to_arrays(self) -> Arrays:
         """All but machine, poses and request, as numbers and text."""
@@ -76,19 +90,21 @@ class Plan:
         held = {name: found.carried(values, name) for name in found.shapes}
         return quantities_in_frame(eigenvalues, vectors, held, self.request, self.machine.description.file.damping)
 
-    def _reasons(self, found: Interpolation, values: FloatArray, start: int, stop: int) -> NDArray[np.int16]:
-        """Codes of joints beyond their limits (m,); those near one are worked out exactly."""
-        codes = np.zeros(stop - start, dtype=np.int16)
-        if found.joints:
-            tree, joints = self.machine.kinematics.tree, list(found.joints)
-            q = np.tile(tree.middle, (stop - start, 1))
-            q[:, joints] = values[found.parts["joints"]].T
-            within = np.minimum(np.abs(q - tree.lower), np.abs(tree.upper - q)).min(axis=1)
-            doubtful = np.flatnonzero(within < _NEAR_LIMIT)
-            if doubtful.size:
-                q[doubtful] = self.machine.kinematics.solve_batch(self.poses.block(start, stop)[doubtful]).q
-            codes = reason_codes(self.machine.kinematics.reach, q)
-        return codes
+    def _reasons(self, found: Interpolation, joints: FloatArray, start: int, stop: int) -> NDArray[np.int16]:
+        """Codes of joints beyond their limits (m,), from values (j, m) of those that come near [m, rad].
+
+        What is near a limit is worked out exactly, and so is what lies beyond if the values are those of an image pose.
+        """
+        if not found.joints:
+            return np.zeros(stop - start, dtype=np.int16)
+        tree = self.machine.kinematics.tree
+        q = np.tile(tree.middle, (stop - start, 1))
+        q[:, list(found.joints)] = joints.T
+        room = np.minimum(q - tree.lower, tree.upper - q).min(axis=1)
+        doubtful = np.flatnonzero((room if found.symmetry is not None else np.abs(room)) < _NEAR_LIMIT)
+        if doubtful.size:
+            q[doubtful] = self.machine.kinematics.solve_batch(self.poses.block(start, stop)[doubtful]).q
+        return reason_codes(self.machine.kinematics.reach, q)
 
     def _solve(self, block: Block, some: Any, start: int) -> None:
         """Replace what is not sure by what the dense solver says."""

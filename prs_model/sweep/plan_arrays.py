@@ -13,10 +13,11 @@ from numpy.typing import NDArray
 from .frames import Frame
 from .interpolation import Interpolation
 from .spectral import Axis, Box
+from .symmetry import Symmetry
 
 Arrays = dict[str, NDArray[Any]]
 
-_KINDS = {kind.__name__: kind for kind in (Interpolation, Box, Axis, Frame)}
+_KINDS = {kind.__name__: kind for kind in (Interpolation, Box, Axis, Frame, Symmetry)}
 _TEXT = "json"
 
 

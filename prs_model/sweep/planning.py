@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,6 +20,7 @@ from .interpolation import Interpolation
 from .poses import Poses
 from .request import Request
 from .spectral import Box
+from .symmetry import Logarithms, Symmetry, folded, symmetry_of
 
 if TYPE_CHECKING:
     from ..machine import Machine
@@ -69,23 +70,36 @@ def interpolated(
 @dataclass(frozen=True, eq=False)
 class _Planner:
     machine: Machine
+    asked: Poses
     poses: Poses
     request: Request
     pool: ThreadPoolExecutor
     shape: Shape
     solver: Solver
+    symmetry: Symmetry | None
 
     @classmethod
     def of(cls, machine: Machine, poses: Poses, request: Request, pool: ThreadPoolExecutor) -> _Planner:
         shape = shape_of(machine.kinematics, poses)
         home = machine.assemble(machine.kinematics.solve_batch(shape.home[None])[0])
         shift, _ = positive_definite_pencil(home.mass, home.stiffness)
-        return cls(machine, poses, request, pool, shape, Solver(machine, _modes_needed(home, request), shift))
+        solver = Solver(machine, _modes_needed(home, request), shift)
+        found, distinct = None, poses
+        if request.quantities == ("frequency",):
+            found = symmetry_of(shape, _like_limbs(machine), request.tolerance, _logarithms(solver, request, pool))
+        if found is not None:
+            distinct = folded(found, poses).distinct
+            shape = shape_of(machine.kinematics, distinct)
+        return cls(machine, poses, distinct, request, pool, shape, solver, found)
 
     def plan(self) -> tuple[Interpolation, str]:
         home = next(self.solver.each(self.shape.home[None], _kept, self.pool))
         lines = [self._line(k, _LINE[0]) for k in range(len(self.shape.columns))]
         frame = self._frame(home, np.concatenate([each.modes.eigenvalues for line in lines for each in line]))
+        return replace(self, solver=replace(self.solver, count=frame.size + 1))._with(frame, lines)
+
+    def _with(self, frame: Frame, lines: list[list[Solved]]) -> tuple[Interpolation, str]:
+        """The interpolation of matrices in a frame, from lines solved already."""
         counts = tuple(self._count(frame, k, line) for k, line in enumerate(lines))
         for _ in range(_ATTEMPTS):
             box = self.shape.box(counts)
@@ -154,12 +168,14 @@ class _Planner:
         tails = box.tail(tensor[..., parts["logarithm"]])
         slack = 2.0 * sum(box.tail(tensor[..., parts["complement"]])) if frame.level is not None else 0.0
         carries = {name: shape for name, shape in shapes.items() if name not in _OWN}
-        return Interpolation(box, tensor, parts, carries, frame, sum(tails), slack, tuple(joints)), tails
+        error = sum(tails) + (self.symmetry.defect if self.symmetry is not None else 0.0)
+        return Interpolation(box, tensor, parts, carries, frame, error, slack, tuple(joints), self.symmetry), tails
 
     def _at_nodes(self, frame: Frame, solved: Solved) -> dict[str, FloatArray]:
         matrices = _frame_matrices(frame, solved)
         frames = matrices.pop("frames")
-        more = carried(solved.systems, frames, self.request)
+        only = self.request.quantities == ("frequency",)
+        more = {} if only else carried(solved.systems, frames, self.request)
         return {**matrices, **more, "joints": solved.configurations.q}
 
     def _near_limits(self, joints: FloatArray) -> list[int]:
@@ -170,24 +186,36 @@ class _Planner:
         return [int(j) for j in np.flatnonzero((low - room < tree.lower) | (high + room > tree.upper))]
 
     def _held_out(self, found: Interpolation) -> float:
-        """The largest error of a logarithm at some of the poses, solved exactly."""
-        numbers = np.sort(np.random.default_rng(2).choice(self.poses.size, _HELD_OUT, replace=False))
-        poses = np.concatenate([self.poses.block(i, i + 1) for i in numbers.tolist()])
-        exact = np.concatenate(list(self.solver.each(poses, lambda solved: solved.modes.eigenvalues, self.pool)))
-        values = np.hstack([found.values(self.poses, i, i + 1) for i in numbers.tolist()])
-        k = self.request.n_modes
-        return float(
-            np.abs(
-                np.log(found.eigenvalues(values)[:k].T - found.frame.shift) - np.log(exact[:, :k] - found.frame.shift)
-            ).max()
-        )
+        """The largest error of a logarithm at some of the poses asked for, solved exactly."""
+        numbers = np.sort(np.random.default_rng(2).choice(self.asked.size, _HELD_OUT, replace=False))
+        poses = np.concatenate([self.asked.block(i, i + 1) for i in numbers.tolist()])
+        exact = _logarithms(self.solver, self.request, self.pool)(poses)
+        if self.symmetry is not None:
+            poses[:, self.symmetry.column] = self.symmetry.folded(poses[:, self.symmetry.column])
+        values = found.values(Poses(self.asked.names, (), poses), 0, len(poses))
+        eigenvalues = found.eigenvalues(values)[: self.request.n_modes].T
+        return float(np.abs(np.log(eigenvalues - found.frame.shift) - exact).max())
 
     def _in_words(self, found: Interpolation, worst: float) -> str:
         box, frame = found.box, found.frame
         level = "" if frame.level is None else f", below {np.sqrt(frame.level) / (2.0 * np.pi):.1f} Hz"
         nodes = f"{len(box.solved)} nodes ({' x '.join(map(str, box.shape))})"
         checked = f"largest error at {_HELD_OUT} poses solved exactly {worst / 2.0:.1e}"
-        return f"{nodes}, {frame.size} modes followed together{level}; {checked}"
+        alike = "" if self.symmetry is None else f"; symmetric within {self.symmetry.defect / 2.0:.1e}"
+        return f"{nodes}, {frame.size} modes followed together{level}{alike}; {checked}"
+
+
+def _like_limbs(machine: Machine) -> set[int]:
+    """How many instances the groups of like parts of a machine have."""
+    return {len(instances) for instances in machine.description.file.symmetry.values()}
+
+
+def _logarithms(solver: Solver, request: Request, pool: ThreadPoolExecutor) -> Logarithms:
+    def logarithms(poses: FloatArray) -> FloatArray:
+        exact = np.concatenate(list(solver.each(poses, lambda solved: solved.modes.eigenvalues, pool)))
+        return np.asarray(np.log(exact[:, : request.n_modes] - solver.shift))
+
+    return logarithms
 
 
 def _kept(solved: Solved) -> Solved:

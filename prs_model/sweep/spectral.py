@@ -53,7 +53,7 @@ class Axis:
     def terms(self, values: FloatArray) -> FloatArray:
         """(m, count), none above one: Chebyshev polynomials; 1, cos, sin, cos 2 ..; or which given node it is."""
         if self.given is not None:
-            return np.asarray(values[:, None] == self.given, dtype=float)
+            return np.asarray(np.eye(self.count)[np.abs(values[:, None] - self.given).argmin(axis=1)])
         if self.kind == "chebyshev":
             place = np.clip((2.0 * values - self.low - self.high) / (self.high - self.low), -1.0, 1.0)
             return np.asarray(np.cos(np.arange(self.count) * np.arccos(-place)[:, None]))
