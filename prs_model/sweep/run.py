@@ -19,7 +19,7 @@ from .plan import Plan, make_plan
 from .poses import Poses
 from .quantities import Block
 from .request import Request
-from .store import Store, opened, piece_length
+from .store import Store, blank, opened, piece_length
 from .truth import check_damping
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ def _whole(plan: Plan, pieces: Iterator[tuple[int, Block]], kept: Store | None, 
         if kept is None:
             for name, values in piece.items():
                 if name not in block:
-                    block[name] = np.full((size, *values.shape[1:]), 0, values.dtype)
+                    block[name] = blank((size, *values.shape[1:]), values.dtype.str)
                 block[name][start : start + len(values)] = values
         if progress is not None:
             progress(done, size)
@@ -115,7 +115,7 @@ def certificate(plan: Plan, block: Mapping[str, Any]) -> dict[str, str | int | f
         "poses_unreachable": int(np.sum(proof == 0)),
     }
     if plan.interpolation is not None:
-        facts["relative_error_bound"] = plan.interpolation.error / 2.0
+        facts["relative_error_bound"] = float(np.nanmax(block["bound"]))
     return facts
 
 

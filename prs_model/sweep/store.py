@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import json
 import logging
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from io import BytesIO
@@ -43,6 +43,9 @@ _REMEDY = "run the sweep again with this folder, and it is computed anew"
 
 Block = dict[str, NDArray[Any]]
 """Results of consecutive poses by name; the first axis counts the poses."""
+
+Layout = tuple[tuple[int, ...], str]
+"""Of an array, without its first axis: shape and type."""
 
 logger = logging.getLogger("prs_model")
 
@@ -93,26 +96,30 @@ class Store:
 
     def read(self, index: int, *names: str) -> Block:
         """The results of a piece, or those of some names. Raises PrsError for one that is missing or damaged."""
-        path = self._path(index)
-        try:
-            return self._read(path, self._span(index), names)
-        except FileNotFoundError as error:
-            raise PrsError(f"{path}: there is no such piece; {_REMEDY}") from error
-        except PrsError as error:
-            raise PrsError(f"{error}; {_REMEDY}") from error
+        with self._piece(index) as (file, arrays):
+            return {name: _array(file, name) for name in arrays if name in names or not names}
 
     def gather(self, *names: str) -> Block:
         """All results in memory, or those of some names. Raises PrsError for a piece that is missing or damaged."""
-        first = self.read(0, *names)
-        shapes = {name: values.shape[1:] for name, values in first.items()}
-        block = {name: np.empty((self.size, *shapes[name]), values.dtype) for name, values in first.items()}
+        block = {
+            name: blank((self.size, *shape), dtype)
+            for name, (shape, dtype) in self.layout().items()
+            if name in names or not names
+        }
         for index, (start, stop) in self.chunks.items():
-            piece = self.read(index, *names)
-            if {name: values.shape[1:] for name, values in piece.items()} != shapes:
-                raise PrsError(f"{self._path(index)}: holds other arrays than the first piece; delete {self.folder}")
-            for name, values in piece.items():
+            for name, values in self.read(index, *names).items():
                 block[name][start:stop] = values
         return block
+
+    def layout(self) -> dict[str, Layout]:
+        """What is known of each pose, from all pieces. Raises PrsError as `gather`."""
+        found: dict[str, Layout] = {}
+        for index in self.chunks:
+            with self._piece(index) as (_, arrays):
+                found = arrays | found
+            if wrong := [name for name, own in arrays.items() if found[name] != own]:
+                raise PrsError(f"{self._path(index)}: '{wrong[0]}' differs from other pieces; delete {self.folder}")
+        return found
 
     def _is_sound(self, index: int) -> bool:
         try:
@@ -131,21 +138,39 @@ class Store:
         return index * self.length, min((index + 1) * self.length, self.size)
 
     def _write(self, path: Path, arrays: Mapping[str, NDArray[Any]], span: tuple[int, ...]) -> None:
-        header = {"run": fingerprint(self.run), "poses": span, "arrays": list(arrays)}
+        layout = {name: (array.shape[1:], array.dtype.str) for name, array in arrays.items()}
+        header = {"run": fingerprint(self.run), "poses": span, "arrays": layout}
         contents = {"header": np.array(json.dumps(header)), **arrays}
         with told(path), whole(path) as file, ZipFile(file, "w") as archive:
             for name, array in contents.items():
                 with archive.open(f"{name}.npy", "w", force_zip64=True) as member:
-                    np.lib.format.write_array(member, np.asanyarray(array), allow_pickle=False)
+                    np.lib.format.write_array(member, array, allow_pickle=False)
 
-    def _read(self, path: Path, span: tuple[int, ...], names: Iterable[str] = ()) -> Block:
+    def _read(self, path: Path, span: tuple[int, ...]) -> Block:
         """Raises FileNotFoundError, or PrsError for what is damaged."""
+        with self._archive(path, span) as (file, arrays):
+            return {name: _array(file, name) for name in arrays}
+
+    @contextmanager
+    def _piece(self, index: int) -> Iterator[tuple[ZipFile, dict[str, Layout]]]:
+        """A piece to read from, and its arrays. Raises PrsError for one that is missing or damaged."""
+        path = self._path(index)
+        try:
+            with self._archive(path, self._span(index)) as piece:
+                yield piece
+        except FileNotFoundError as error:
+            raise PrsError(f"{path}: there is no such piece; {_REMEDY}") from error
+        except PrsError as error:
+            raise PrsError(f"{error}; {_REMEDY}") from error
+
+    @contextmanager
+    def _archive(self, path: Path, span: tuple[int, ...]) -> Iterator[tuple[ZipFile, dict[str, Layout]]]:
         try:
             with ZipFile(path) as file:
                 header = json.loads(str(_array(file, "header")))
                 if (header["run"], header["poses"]) != (fingerprint(self.run), list(span)):
                     raise ValueError("it is of another sweep or of other poses")
-                return {name: _array(file, name) for name in names or header["arrays"]}
+                yield file, {name: (tuple(shape), dtype) for name, (shape, dtype) in header["arrays"].items()}
         except (FileNotFoundError, MemoryError):
             raise
         except Exception as error:  # whatever zip, numpy or json make of damaged bytes
@@ -156,6 +181,11 @@ def _array(file: ZipFile, name: str) -> NDArray[Any]:
     """An array whose checksum was tested."""
     array: NDArray[Any] = np.lib.format.read_array(BytesIO(file.read(f"{name}.npy")), allow_pickle=False)
     return array
+
+
+def blank(shape: tuple[int, ...], dtype: str) -> NDArray[Any]:
+    """What stands where a piece has nothing, none of its poses being reachable: NaN, or zero where there is none."""
+    return np.full(shape, np.nan if np.dtype(dtype).kind == "f" else 0, dtype)
 
 
 @contextmanager

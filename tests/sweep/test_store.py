@@ -170,14 +170,24 @@ def test_a_folder_of_another_run_is_refused(folder: Path, tmp_path: Path) -> Non
     assert_same(gathered(folder, FEW), results(0, 5))
 
 
-def test_pieces_with_other_arrays_are_told(folder: Path) -> None:
+def test_what_a_piece_does_not_have_is_nan(folder: Path) -> None:
+    with opened(folder, RUN, FEW) as store:
+        for index in range(5):
+            block = results(index, index + 1)
+            if index in (0, 3):
+                del block["vectors"]
+            store.write(index, block)
+        vectors = store.gather()["vectors"]
+        np.testing.assert_array_equal(lazy(store)["vectors"].compute(), vectors)
+    assert np.isnan(vectors).all(axis=(1, 2)).tolist() == [True, False, False, True, False]
+
+
+def test_pieces_that_do_not_fit_together_are_told(folder: Path) -> None:
     with opened(folder, RUN, FEW) as store:
         for index in range(5):
             store.write(index, results(index, index + 1))
-        block = results(4, 5)
-        del block["vectors"]
-        store.write(4, block)
-        with pytest.raises(PrsError, match=r"piece-000004.npz: holds other arrays than the first"):
+        store.write(4, {"frequency": np.ones((1, 7))})
+        with pytest.raises(PrsError, match=r"piece-000004\.npz: 'frequency' differs from other pieces"):
             store.gather()
 
 
@@ -246,6 +256,7 @@ def test_results_are_read_when_they_are_asked_for(folder: Path, tmp_path: Path) 
     run(folder, StandIn(tmp_path / "journal"))
     with opened(folder, RUN, SHAPE) as store:
         arrays = lazy(store)
+        assert store.layout()["frequency"] == ((6,), "<f8")
     (folder / "piece-000063.npz").unlink()
     frequency = arrays["frequency"].reshape(*SHAPE, 6)
     np.testing.assert_array_equal(frequency[2, 7].compute(), results(167, 168)["frequency"][0])
@@ -265,6 +276,14 @@ def test_large_results_stay_where_they_are(tmp_path: Path, monkeypatch: pytest.M
     found.to_netcdf(tmp_path / "map.nc", engine="h5netcdf")
     with xarray.open_dataset(tmp_path / "map.nc", engine="h5netcdf") as written:
         xarray.testing.assert_equal(written, expected)
+
+
+def test_pieces_without_a_reachable_pose_fit_in(tmp_path: Path) -> None:
+    machine = prs.load_machine("hexapod")
+    asked: Any = {"z": np.r_[5.0, 5.1, np.linspace(0.089, 0.091, 70), 6.0], "quantities": "identity", "n_modes": 2}
+    found = machine.sweep(**asked)
+    xarray.testing.assert_identical(machine.sweep(**asked, store=tmp_path), found)
+    assert (found["identity"] == 0).all("mode").values.tolist() == [True] * 2 + [False] * 70 + [True]
 
 
 def test_an_interrupted_sweep_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
