@@ -109,9 +109,10 @@ def _mirror(
 
 
 def _alike(kinematics: Kinematics, poses: FloatArray, others: FloatArray) -> bool:
-    """Whether the machine stands alike at poses and others (N, d), all of them within reach."""
+    """Whether the machine stands alike at poses and others (N, d), as far as these can be reached; some must."""
     q, p = kinematics.solve_batch(poses).q, kinematics.solve_batch(others).q
-    return bool(np.all(np.abs(q - p) < _SAME))
+    reached = ~np.isnan(q - p).any(axis=1)
+    return bool(reached.sum() >= 3 and np.all(np.abs(q - p)[reached] < _SAME))
 
 
 def _trials(bounds: FloatArray, columns: tuple[int, ...], fixed: FloatArray) -> FloatArray:

@@ -31,7 +31,7 @@ def solved_directly(
 ) -> Block:
     """The block of poses (m, d) [m, rad], unreachable ones marked.
 
-    frame: in which the vectors are told, so that they compare with interpolated ones; by default M^(1/2) times the shapes.
+    frame: in which the vectors are told, to compare with interpolated ones; else they are M^(1/2) times the shapes.
     Raises PrsError where a machine has fewer modes than are asked for, or is singular.
     """
     found = machine.kinematics.solve_batch(poses)

@@ -1,8 +1,8 @@
 """What is smooth in the pose though frequencies cross and kink: matrices of the low invariant subspace as a whole.
 
 The span of the lowest p shapes U (n, p) turns smoothly with the pose as long as eigenvalue p + 1 keeps away. Among its
-bases that nearest to the home pose's shapes is Q from the polar decomposition of U^T M U_home. In this frame W = U Q the
-eigenvalues are those of
+bases that nearest to the home pose's shapes is W = U Q, with Q from the polar decomposition of U^T M U_home. In this
+frame the eigenvalues are those of
 
     L = Q^T log(Lambda - s) Q,
 
@@ -65,13 +65,13 @@ def in_frame(frame: Frame, systems: Systems, modes: LowModes) -> InFrame:
     left, sines, right = np.linalg.svd(shapes.swapaxes(1, 2) @ (systems.mass @ frame.home))
     nearest = left @ right
     logarithms = nearest.swapaxes(1, 2) @ (np.log(values - frame.shift)[:, :, None] * nearest)
-    complements = None if frame.level is None else _complements(frame, systems, frame.level)
-    return InFrame(shapes @ nearest, (logarithms + logarithms.swapaxes(1, 2)) / 2.0, complements, sines[:, -1])
+    complement = None if frame.level is None else complements(frame.home, frame.level, systems)
+    return InFrame(shapes @ nearest, (logarithms + logarithms.swapaxes(1, 2)) / 2.0, complement, sines[:, -1])
 
 
-def _complements(frame: Frame, systems: Systems, level: float) -> FloatArray:
-    """Z (N, p, p) at the level [rad^2/s^2]."""
-    momenta, p = systems.mass @ frame.home, frame.size
+def complements(shapes: FloatArray, level: float, systems: Systems) -> FloatArray:
+    """Z (N, p, p) of shapes V (n, p) at a level [rad^2/s^2]."""
+    momenta, p = systems.mass @ shapes, shapes.shape[1]
     result = np.empty((len(momenta), p, p))
     for i, (mass, stiffness, free) in enumerate(pencils(systems)):
         bordered = np.zeros((len(mass) + p, len(mass) + p))

@@ -16,11 +16,12 @@ from .direct import solved_directly
 from .in_frame import quantities_in_frame
 from .interpolation import Interpolation
 from .plan_arrays import Arrays, from_arrays, to_arrays
-from .planning import interpolated
+from .planning import Found, interpolated
 from .poses import Poses
-from .quantities import Block, Labels, blank, labels
+from .quantities import Block, Labels, labels
 from .reasons import reason_codes
 from .request import Request
+from .ritz import RitzInterpolation
 from .symmetry import Folded, folded
 
 if TYPE_CHECKING:
@@ -37,7 +38,7 @@ class Plan:
     machine: Machine
     poses: Poses
     request: Request
-    interpolation: Interpolation | None
+    interpolation: Found | None
     why: str
     kernels: Any = field(default=plain, repr=False)
 
@@ -48,17 +49,14 @@ class Plan:
             return solved_directly(self.machine, self.request, self.poses.block(start, stop), self._labels, 0.0)
         first, last, places = self._folded.span(start, stop) if self._folded is not None else (start, stop, None)
         values = found.values(self.poses if self._folded is None else self._folded.distinct, first, last)
-        quantities = self._quantities(found, values)
-        sure = found.complete(values, self.kernels)
+        block = self._quantities(found, values)
+        block["sure"] = found.complete(values, self.kernels) & (block["bound"] <= self.request.tolerance).all(axis=1)
+        joints = values[found.parts["joints"]]
         if places is not None:
-            quantities, sure = {name: each[places] for name, each in quantities.items()}, sure[places]
-            values = values[found.parts["joints"]][:, places]
-        else:
-            values = values[found.parts["joints"]]
-        block = blank(self.request, self._labels, stop - start) | quantities
-        block["reason"][:] = self._reasons(found, values, start, stop)
-        block["proof"][:] = INTERPOLATED
-        block["bound"] = np.full((stop - start, self.request.n_modes), found.error / 2.0)
+            block, joints = {name: each[places] for name, each in block.items()}, joints[:, places]
+        sure = block.pop("sure")
+        block["reason"] = self._reasons(found, joints, start, stop)
+        block["proof"] = np.full(stop - start, INTERPOLATED, dtype=np.int8)
         self._solve(block, np.flatnonzero(~sure & (block["reason"] == 0)), start)
         _forget(block, block["reason"] != 0)
         return block
@@ -82,15 +80,18 @@ class Plan:
     def _labels(self) -> Labels:
         return labels(self.machine, self.request)
 
-    def _quantities(self, found: Interpolation, values: FloatArray) -> Block:
-        if self.request.quantities == ("frequency",):
-            eigenvalues = found.eigenvalues(values, self.kernels)[: self.request.n_modes].T
-            return {"frequency": np.sqrt(np.maximum(eigenvalues, 0.0)) / (2.0 * np.pi)}
+    def _quantities(self, found: Found, values: FloatArray) -> Block:
+        """What is asked at the poses of interpolated values (e, m), and the bound of each frequency."""
+        if isinstance(found, RitzInterpolation) or self.request.quantities == ("frequency",):
+            frequencies, bounds = found.frequencies(values, self.request.n_modes, self.kernels)
+            return {"frequency": frequencies, "bound": bounds}
         eigenvalues, vectors = found.modes(values)
         held = {name: found.carried(values, name) for name in found.shapes}
-        return quantities_in_frame(eigenvalues, vectors, held, self.request, self.machine.description.file.damping)
+        damping = self.machine.description.file.damping
+        bounds = np.array(found.bound(eigenvalues[:, : self.request.n_modes]))
+        return quantities_in_frame(eigenvalues, vectors, held, self.request, damping) | {"bound": bounds}
 
-    def _reasons(self, found: Interpolation, joints: FloatArray, start: int, stop: int) -> NDArray[np.int16]:
+    def _reasons(self, found: Found, joints: FloatArray, start: int, stop: int) -> NDArray[np.int16]:
         """Codes of joints beyond their limits (m,), from values (j, m) of those that come near [m, rad].
 
         What is near a limit is worked out exactly, and so is what lies beyond if the values are those of an image pose.
@@ -111,7 +112,8 @@ class Plan:
         if not some.size or self.interpolation is None:
             return
         found, poses = self.interpolation, np.concatenate([self.poses.block(start + i, start + i + 1) for i in some])
-        exact = solved_directly(self.machine, self.request, poses, self._labels, found.frame.shift, found.frame)
+        frame = found.frame if isinstance(found, Interpolation) else None
+        exact = solved_directly(self.machine, self.request, poses, self._labels, found.shift, frame)
         for name, values in exact.items():
             block[name][some] = values
 

@@ -12,23 +12,24 @@ from numpy.typing import NDArray
 
 from .frames import Frame
 from .interpolation import Interpolation
+from .ritz import RitzBasis, RitzInterpolation
 from .spectral import Axis, Box
 from .symmetry import Symmetry
 
 Arrays = dict[str, NDArray[Any]]
 
-_KINDS = {kind.__name__: kind for kind in (Interpolation, Box, Axis, Frame, Symmetry)}
+_KINDS = {kind.__name__: kind for kind in (Interpolation, RitzInterpolation, Box, Axis, Frame, RitzBasis, Symmetry)}
 _TEXT = "json"
 
 
-def to_arrays(interpolation: Interpolation | None, why: str) -> Arrays:
+def to_arrays(interpolation: Interpolation | RitzInterpolation | None, why: str) -> Arrays:
     """Numbers and text, none of which needs pickling. why: how the interpolation, or none, came about."""
     arrays: Arrays = {}
     content = {"why": why, "interpolation": _encoded(interpolation, "interpolation", arrays)}
     return {_TEXT: np.array(json.dumps(content)), **arrays}
 
 
-def from_arrays(arrays: Arrays) -> tuple[Interpolation | None, str]:
+def from_arrays(arrays: Arrays) -> tuple[Interpolation | RitzInterpolation | None, str]:
     """What `to_arrays` was given."""
     content = json.loads(str(arrays[_TEXT]))
     return _decoded(content["interpolation"], arrays), content["why"]

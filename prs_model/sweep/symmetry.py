@@ -1,7 +1,7 @@
 """Poses that are alike because the limbs are: tested on the machine at hand, then used for its frequencies.
 
-A machine of n like limbs may have the same frequencies when a periodic coordinate goes on by an n-th of its turn, and at
-poses that lie opposite each other about a plane through a limb. Meshes and reductions break that a little: what was
+A machine of n like limbs may have the same frequencies when a periodic coordinate goes on by an n-th of its turn, and
+at poses that lie opposite each other about a plane through a limb. Meshes and reductions break that a little: what was
 found is used if it is small beside the tolerance, and counts as an error.
 """
 
