@@ -280,7 +280,7 @@ def test_large_results_stay_where_they_are(tmp_path: Path, monkeypatch: pytest.M
 
 def test_pieces_without_a_reachable_pose_fit_in(tmp_path: Path) -> None:
     machine = prs.load_machine("hexapod")
-    asked: Any = {"z": np.r_[5.0, 5.1, np.linspace(0.089, 0.091, 70), 6.0], "quantities": "identity", "n_modes": 2}
+    asked: Any = {"z": np.r_[0.15, 0.16, np.linspace(0.089, 0.091, 70), 0.2], "quantities": "identity", "n_modes": 2}
     found = machine.sweep(**asked)
     xarray.testing.assert_identical(machine.sweep(**asked, store=tmp_path), found)
     assert (found["identity"] == 0).all("mode").values.tolist() == [True] * 2 + [False] * 70 + [True]
