@@ -84,7 +84,7 @@ class Plan:
         """What is asked at the poses of interpolated values (e, m), and the bound of each frequency."""
         if isinstance(found, RitzInterpolation) or self.request.quantities == ("frequency",):
             frequencies, bounds = found.frequencies(values, self.request.n_modes, self.kernels)
-            return {"frequency": frequencies, "bound": bounds}
+            return {"frequency": frequencies, "bound": np.array(bounds)}
         eigenvalues, vectors = found.modes(values)
         held = {name: found.carried(values, name) for name in found.shapes}
         damping = self.machine.description.file.damping

@@ -21,6 +21,7 @@ from .request import Request
 from .ritz import RitzInterpolation
 from .spectral import Box
 from .symmetry import Logarithms, Symmetry, folded, symmetry_of
+from .tensor import NEGLIGIBLE
 
 if TYPE_CHECKING:
     from ..machine import Machine
@@ -32,7 +33,7 @@ _FEWEST = 400  # poses that are worth an interpolation
 _LINE = (17, 33, 65, 129)  # nodes of the lines on which convergence is tried
 _RITZ_SIZES = (24, 36, 54)  # shapes of a basis
 _SCATTERED = 48  # poses whose shapes it is made of, beside those on the lines
-_SHARE = 0.2  # of the error allowed, for what a line leaves out
+_SHARE = 1.4  # of the error allowed over the square of the number of axes, for what a line leaves out
 _ENLARGED = 1.2  # more nodes along an axis whose tail is too long
 _ATTEMPTS = 4
 _HELD_OUT = 24
@@ -137,7 +138,7 @@ class _Planner:
 
     def _count(self, approach: Approach, k: int, solved: list[Solved], most: float) -> int:
         """Nodes along coordinate k for which the last terms along a line have a small share of the error allowed."""
-        most *= _SHARE / len(self.shape.columns)
+        most *= _SHARE / len(self.shape.columns) ** 2
         for count in _LINE:
             axis, _ = self.shape.line(k, count)
             if axis.given is not None:
@@ -174,7 +175,7 @@ class _Planner:
             box=box,
             nodes=nodes,
             parts=parts,
-            error=sum(tails),
+            error=(1.0 + NEGLIGIBLE) * sum(tails),
             slack=slack,
             joints=tuple(joints),
             symmetry=self.symmetry,

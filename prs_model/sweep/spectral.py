@@ -115,15 +115,18 @@ class Box:
         return np.concatenate([opposite, half], axis=a)
 
     def tail(self, tensor: FloatArray) -> tuple[float, ...]:
-        """For each axis, the sum of the norms of the coefficients in its last two shells; zero where nodes are given.
+        """For each axis, the norm of the last two terms along it, the largest on any line of nodes; 0 for given ones.
 
-        No value between the nodes is further than their sum from that of the interpolant without these terms.
+        No value on these lines is further than that from the interpolant without these terms.
         """
-        sizes = np.linalg.norm(self.coefficients(tensor), axis=-1)
-        return tuple(
-            0.0 if axis.given is not None else float(np.moveaxis(sizes, k, 0)[-_LAST:].sum())
-            for k, axis in enumerate(self.axes)
-        )
+        return tuple(self._tail(k, axis, tensor) for k, axis in enumerate(self.axes))
+
+    @staticmethod
+    def _tail(k: int, axis: Axis, tensor: FloatArray) -> float:
+        if axis.given is not None:
+            return 0.0
+        last = np.tensordot(axis.transform[-_LAST:], tensor, (1, k))
+        return float(np.linalg.norm(last, axis=-1).sum(axis=0).max())
 
     def coefficients(self, tensor: FloatArray) -> FloatArray:
         """Of the products of terms along the axes, in the shape of the tensor; values where nodes are given."""

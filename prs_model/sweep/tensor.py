@@ -15,7 +15,7 @@ from .spectral import Box, Terms, on_grid
 from .symmetry import Symmetry
 
 _POINTS = 512  # of a list, interpolated at once
-_NEGLIGIBLE = 1e-3  # of the error, what terms left out at the points of a list may add
+NEGLIGIBLE = 0.02  # of the error, what terms left out at the points of a list may add
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +69,7 @@ class Tensor:
 
     @cached_property
     def _terms(self) -> Terms:
-        return self.box.terms(self.nodes, self.error * _NEGLIGIBLE)
+        return self.box.terms(self.nodes, self.error * NEGLIGIBLE)
 
 
 def _leading(lengths: Sequence[int], wanted: int) -> int:
