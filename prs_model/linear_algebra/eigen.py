@@ -12,6 +12,8 @@ from ..errors import PrsError
 
 _PIVOT_TOLERANCE = 1e-12
 _MASS_TOLERANCE = 1e-14
+_LOOSE = 1e6  # of the slowest rate of a held coordinate over an eigenvalue: beside a mode so slow others lose digits
+_BELOW = -1e-3  # of that rate: the shift of what is free, or nearly so
 _INDEFINITE = 1e-9
 
 
@@ -26,14 +28,24 @@ def lowest_modes(
     Raises PrsError when a direction has neither mass nor stiffness, or K is indefinite; `labels` name the coordinates.
     """
     shift, pencil = positive_definite_pencil(mass, stiffness, labels)
-    scale = 1.0 / np.sqrt(np.diag(pencil))
-    scaling = np.outer(scale, scale)
-    mu, vectors = _largest(mass * scaling, pencil * scaling, count)
+    mu, shapes = _slowest(mass, pencil, count)
+    rate = slowest_rate(mass, stiffness)
+    if shift == 0.0 and mu[0] * rate > _LOOSE:
+        shift = _BELOW * rate
+        mu, shapes = _slowest(mass, stiffness - shift * mass, count)
     heavy = mu > _MASS_TOLERANCE * mu[0]
-    mu, shapes = mu[heavy], (vectors * scale[:, None])[:, heavy]
+    mu, shapes = mu[heavy], shapes[:, heavy]
     shapes = shapes / np.sqrt(mu)
     signs = np.sign(shapes[np.argmax(np.abs(shapes), axis=0), np.arange(shapes.shape[1])])
     return 1.0 / mu + shift, shapes * signs
+
+
+def _slowest(mass: FloatArray, pencil: FloatArray, count: int) -> tuple[FloatArray, FloatArray]:
+    """The `count` largest mu of M x = mu (K - s M) x, descending, and shapes (n, count) of unit x^T (K - s M) x."""
+    scale = 1.0 / np.sqrt(np.diag(pencil))
+    scaling = np.outer(scale, scale)
+    mu, vectors = _largest(mass * scaling, pencil * scaling, count)
+    return mu, vectors * scale[:, None]
 
 
 def _largest(a: FloatArray, b: FloatArray, count: int) -> tuple[FloatArray, FloatArray]:
@@ -63,7 +75,7 @@ def positive_definite_pencil(
     """
     if _is_positive_definite(stiffness):
         return 0.0, stiffness
-    shift = -1e-3 * slowest_rate(mass, stiffness)
+    shift = _BELOW * slowest_rate(mass, stiffness)
     shifted = stiffness - shift * mass
     if _is_positive_definite(shifted):
         return shift, shifted

@@ -100,7 +100,9 @@ class Following:
             raise NotSmoothError("the low shapes change too much over the poses")
         rows, columns = np.tril_indices(frame.size)
         matrices = {"logarithm": found.logarithms[:, rows, columns], "frames": found.frames}
-        if found.complements is not None:
+        if found.complements is not None and frame.level is not None:
+            if np.any(solved.modes.eigenvalues[:, frame.size] < frame.level):
+                raise NotSmoothError("another mode comes below the level")
             if np.any((np.linalg.eigvalsh(found.complements) < 0.0).sum(axis=1) != frame.size):
                 raise NotSmoothError("modes cross the level")
             matrices["complement"] = found.complements[:, rows, columns]
@@ -144,6 +146,8 @@ def following(request: Request, solver: Solver, home: Solved, eigenvalues: Float
     eigenvalues (N, k): at samples. Raises NotSmoothError where there is none, or the band reaches beyond all of them.
     """
     n, available = request.n_modes, eigenvalues.shape[1]
+    if available < n:
+        raise NotSmoothError(f"only {available} modes")
     if available < solver.count:
         return Following(Frame(home.modes.shapes[0], solver.shift, None), request)
     shifted = eigenvalues - solver.shift

@@ -38,13 +38,18 @@ class Shape:
 
     def box(self, counts: tuple[int, ...]) -> Box:
         """With so many nodes along each coordinate; a coordinate of fewer values has these for nodes."""
-        return Box(tuple(self._axis(k, count) for k, count in enumerate(counts)), self.columns, self.fixed, self.mirror)
+        axes = tuple(self._given(k, count) or self._axis(k, count) for k, count in enumerate(counts))
+        return Box(axes, self.columns, self.fixed, self.mirror)
+
+    def _given(self, k: int, count: int) -> Axis | None:
+        values = self.values[k]
+        if values is None or len(values) > count or self._mirrored(k):
+            return None
+        low, high = self.bounds[k]
+        return Axis("given", low, high, len(values), values)
 
     def _axis(self, k: int, count: int) -> Axis:
         low, high = self.bounds[k]
-        values = self.values[k]
-        if values is not None and len(values) <= count and not self._mirrored(k):
-            return Axis("given", low, high, len(values), values)
         kind: Kind = "fourier" if self.periodic[k] else "chebyshev"
         even = count + count % 2
         return Axis(kind, -high if self._is_radius(k) else low, high, even if self._mirrored(k) else count)

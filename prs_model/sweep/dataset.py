@@ -53,7 +53,7 @@ def to_dataset(
     data = xarray.Dataset(coords=_pose_coordinates(machine, poses))
     labelled = labels(machine, request)
     for name, variable in variables(request).items():
-        values = block[name].reshape(*shape, *block[name].shape[1:])
+        values = block[name].reshape((*shape, *block[name].shape[1:]))
         attributes: dict[str, Any] = {"long_name": variable.long_name, "units": variable.units}
         data[name] = ((*dims, *variable.dims), values, attributes)
         data = data.assign_coords({dim: (dim, list(labelled[dim])) for dim in variable.dims})
@@ -117,7 +117,7 @@ def _identities(machine: Machine, poses: Poses, request: Request, block: Block) 
 
     def array(values: NDArray[Any], last: str, about: dict[str, Any], **attributes: str) -> xarray.DataArray:
         return xarray.DataArray(
-            values.reshape(*shape, request.n_modes), {**coordinates, **about}, (*dims, last), attrs=attributes
+            values.reshape((*shape, request.n_modes)), {**coordinates, **about}, (*dims, last), attrs=attributes
         )
 
     where = f"modes are numbered as at {place}; 0 where none could be followed"

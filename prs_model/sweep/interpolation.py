@@ -29,6 +29,16 @@ class Interpolation(Tensor):
     shapes: Mapping[str, tuple[int, ...]]
 
     @property
+    def level(self) -> float | None:
+        """Below which eigenvalues are counted [rad^2/s^2]; None where there are no others."""
+        return self.frame.level
+
+    @property
+    def counted(self) -> FloatArray:
+        """The shapes (n, p) of Z."""
+        return self.frame.home
+
+    @property
     def shift(self) -> float:
         """Below all eigenvalues [rad^2/s^2]."""
         return self.frame.shift

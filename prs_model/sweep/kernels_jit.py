@@ -16,6 +16,7 @@ IntArray = NDArray[np.int64]
 
 _WIDTH = 32
 _SWEEPS = 12
+_PIVOT = 1e-7  # of the largest entry: elimination loses no more digits than that
 _CONVERGED = 1e-12  # of the largest diagonal entry, of what is left beside the diagonals
 
 
@@ -78,28 +79,33 @@ def _rotate(a: FloatArray, i: int, j: int, p: int, c: FloatArray, s: FloatArray)
             a[u, v, k] = c[k] * at_j - s[k] * at_i
 
 
-@numba.njit(cache=True, nogil=True)
+@numba.njit(cache=True, nogil=True, error_model="numpy")
 def negatives(packed: FloatArray, p: int, slack: float) -> IntArray:
-    """Number of negative eigenvalues (m,), or -1 where one lies within `slack` of zero."""
+    """Number of negative eigenvalues (m,), or -1 where one lies within `slack` of zero, or a pivot is too small."""
     m = packed.shape[1]
     result = np.empty(m, dtype=np.int64)
     a, counts = np.empty((p, p, _WIDTH)), np.empty((2, _WIDTH), dtype=np.int64)
+    size, sure = np.empty(_WIDTH), np.empty(_WIDTH, dtype=np.bool_)
     for start in range(0, m, _WIDTH):
         width = min(_WIDTH, m - start)
+        sure[:] = True
         for side in range(2):
+            size[:] = 0.0
             for i in range(p):
                 for j in range(i + 1):
                     shift = (slack if side == 0 else -slack) if i == j else 0.0
                     for k in range(width):
                         a[i, j, k] = packed[i * (i + 1) // 2 + j, start + k] + shift
+                        size[k] = max(size[k], abs(a[i, j, k]))
             counts[side] = 0
             for j in range(p):
                 for k in range(width):
                     counts[side, k] += a[j, j, k] < 0.0
+                    sure[k] &= abs(a[j, j, k]) > _PIVOT * size[k]
                 for i in range(j + 1, p):
                     for h in range(j + 1, i + 1):
                         for k in range(width):
                             a[i, h, k] -= a[i, j, k] * a[h, j, k] / a[j, j, k]
         for k in range(width):
-            result[start + k] = counts[0, k] if counts[0, k] == counts[1, k] else -1
+            result[start + k] = counts[0, k] if sure[k] and counts[0, k] == counts[1, k] else -1
     return result

@@ -72,6 +72,9 @@ def _lowest(
         values, shapes = lowest_modes(mass, stiffness, count)
         return values, free @ shapes
     present = mu > _MASSLESS * mu[0]
+    if present.sum() < min(count, len(mass)):  # massless directions, or a mode so slow that all others seem so
+        values, shapes = lowest_modes(mass, stiffness, count)
+        return values, free @ shapes
     return 1.0 / mu[present] + shift, free @ (shapes / np.sqrt(mu))[:, present]
 
 

@@ -12,7 +12,9 @@ from numpy.typing import NDArray
 
 from ..arrays import BoolArray, FloatArray
 from . import kernels as plain
+from .counts import nothing_missed
 from .direct import solved_directly
+from .exact import CHUNK, Solver, part
 from .in_frame import quantities_in_frame
 from .interpolation import Interpolation
 from .plan_arrays import Arrays, from_arrays, to_arrays
@@ -51,6 +53,8 @@ class Plan:
         values = found.values(self.poses if self._folded is None else self._folded.distinct, first, last)
         block = self._quantities(found, values)
         block["sure"] = found.complete(values, self.kernels) & (block["bound"] <= self.request.tolerance).all(axis=1)
+        if self.request.exact_counts:
+            block["sure"] &= self._counted(found, first, last)
         joints = values[found.parts["joints"]]
         if places is not None:
             block, joints = {name: each[places] for name, each in block.items()}, joints[:, places]
@@ -90,6 +94,20 @@ class Plan:
         damping = self.machine.description.file.damping
         bounds = np.array(found.bound(eigenvalues[:, : self.request.n_modes]))
         return quantities_in_frame(eigenvalues, vectors, held, self.request, damping) | {"bound": bounds}
+
+    def _counted(self, found: Found, first: int, last: int) -> BoolArray:
+        """Whether no mode is missed at poses first .. last - 1 of those worked out (m,), by the whole system."""
+        counted = np.ones(last - first, dtype=bool)
+        if found.level is None:
+            return counted
+        poses = self.poses if self._folded is None else self._folded.distinct
+        configurations = self.machine.kinematics.solve_batch(poses.block(first, last))
+        there = np.flatnonzero(reason_codes(self.machine.kinematics.reach, configurations.q) == 0)
+        solver = Solver(self.machine, 1, found.shift)
+        for start in range(0, len(there), CHUNK):
+            some = there[start : start + CHUNK]
+            counted[some] = nothing_missed(solver, part(configurations, some), found.counted, found.level)
+        return counted
 
     def _reasons(self, found: Found, joints: FloatArray, start: int, stop: int) -> NDArray[np.int16]:
         """Codes of joints beyond their limits (m,), from values (j, m) of those that come near [m, rad].

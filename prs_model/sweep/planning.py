@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -32,6 +33,7 @@ Found = Interpolation | RitzInterpolation
 _FEWEST = 400  # poses that are worth an interpolation
 _LINE = (17, 33, 65, 129)  # nodes of the lines on which convergence is tried
 _RITZ_SIZES = (24, 36, 54)  # shapes of a basis
+_WORTH_RITZ = 3000  # poses that are worth a basis
 _SCATTERED = 48  # poses whose shapes it is made of, beside those on the lines
 _SHARE = 1.4  # of the error allowed over the square of the number of axes, for what a line leaves out
 _ENLARGED = 1.2  # more nodes along an axis whose tail is too long
@@ -99,14 +101,15 @@ class _Planner:
             return self._fitted(following(self.request, self.solver, home, values), lines)
         except NotSmoothError as error:
             reason = str(error)
-        samples += list(self.solver.each(self._scattered(), _kept, self.pool))
-        for size in _RITZ_SIZES:
+        if self.poses.size > _WORTH_RITZ:
+            samples += list(self.solver.each(self._scattered(), _kept, self.pool))
+        for size in _RITZ_SIZES if self.poses.size > _WORTH_RITZ else ():
             try:
                 found, words = self._fitted(ritz_on_inverse(self.request, self.solver, home, samples, size), lines)
                 return found, f"{reason}; {words}"
             except NotSmoothError as error:
-                last = str(error)
-        raise NotSmoothError(f"{reason}; {last}")
+                reason = f"{reason}; {error}"
+        raise NotSmoothError(reason)
 
     def _line(self, k: int, count: int) -> list[Solved]:
         return list(self.solver.each(self.shape.line(k, count)[1], _kept, self.pool))
@@ -141,8 +144,6 @@ class _Planner:
         most *= _SHARE / len(self.shape.columns) ** 2
         for count in _LINE:
             axis, _ = self.shape.line(k, count)
-            if axis.given is not None:
-                return axis.count
             if count > _LINE[0]:
                 solved = self._line(k, count)
             matrices = np.concatenate([approach.on_line(each) for each in solved])
@@ -194,8 +195,10 @@ class _Planner:
 
         No error where one is larger than its bound, or less than half of the poses are within the tolerance.
         """
-        numbers = np.sort(np.random.default_rng(2).choice(self.asked.size, _HELD_OUT, replace=False))
-        poses = np.concatenate([self.asked.block(i, i + 1) for i in numbers.tolist()])
+        drawn = np.random.default_rng(2).choice(self.asked.size, _HELD_OUT, replace=False)
+        numbers = sorted({*drawn.tolist(), *_corners(self.asked)})
+        poses = np.concatenate([self.asked.block(i, i + 1) for i in numbers])
+        poses = poses[self.machine.kinematics.solve_batch(poses).reachable]
         exact = np.exp(_logarithms(self.solver, self.request, self.pool)(poses)) + self.solver.shift
         if self.symmetry is not None:
             poses[:, self.symmetry.column] = self.symmetry.folded(poses[:, self.symmetry.column])
@@ -211,9 +214,14 @@ class _Planner:
         nodes = f"{len(found.box.solved)} nodes ({' x '.join(map(str, found.box.shape))})"
         alike = "" if self.symmetry is None else f"; symmetric within {self.symmetry.defect / 2.0:.1e}"
         sure = "" if share == 1.0 else f", {share:.0%} of which it covers,"
-        return (
-            f"{nodes}, {approach.words()}{alike}; largest error at {_HELD_OUT} poses solved exactly{sure} {worst:.1e}"
-        )
+        checked = f"largest error at the corners and {_HELD_OUT} poses, solved exactly{sure}, {worst:.1e}"
+        return f"{nodes}, {approach.words()}{alike}; {checked}"
+
+
+def _corners(poses: Poses) -> set[int]:
+    """The numbers of the poses at the corners of a grid; the first and the last of a list."""
+    ends = [(0, length - 1) for length in poses.shape]
+    return {int(np.ravel_multi_index(corner, poses.shape)) for corner in product(*ends)}
 
 
 def _like_limbs(machine: Machine) -> set[int]:

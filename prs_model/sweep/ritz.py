@@ -81,6 +81,16 @@ class RitzInterpolation(Tensor):
     basis: RitzBasis
 
     @property
+    def level(self) -> float:
+        """Below which eigenvalues are counted [rad^2/s^2]."""
+        return self.basis.level
+
+    @property
+    def counted(self) -> FloatArray:
+        """The shapes (n, r) of Z."""
+        return self.basis.shapes
+
+    @property
     def shift(self) -> float:
         """Below all eigenvalues [rad^2/s^2]."""
         return self.basis.shift

@@ -6,6 +6,7 @@ import os
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextlib import ExitStack, contextmanager
+from importlib.util import find_spec
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,6 +20,7 @@ from .plan import Plan, make_plan
 from .poses import Poses
 from .quantities import Block
 from .request import Request
+from .room import check_room
 from .store import Store, blank, opened, piece_length
 from .truth import check_damping
 
@@ -43,6 +45,8 @@ def sweep(
 ) -> xarray.Dataset:
     """What is asked at all poses, as a dataset; see Machine.sweep."""
     check_damping(machine, request)
+    if store is None or find_spec("dask") is None:
+        check_room(machine, poses, request)
     identity_text = identity(machine, poses, request) if store is not None else ""
     with ExitStack() as held:
         pool = held.enter_context(workers())
@@ -102,7 +106,11 @@ def workers(threads: int | None = None) -> Iterator[ThreadPoolExecutor]:
 
     available = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
     with threadpool_limits(1, user_api="blas"), ThreadPoolExecutor(threads or available) as pool:
-        yield pool
+        try:
+            yield pool
+        except BaseException:  # an interruption among them: what has not begun is dropped
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
 
 
 def certificate(plan: Plan, block: Mapping[str, Any]) -> dict[str, str | int | float]:
