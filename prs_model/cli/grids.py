@@ -11,7 +11,7 @@ from ..description.units import Dimension
 from ..errors import PrsError
 from .values import once, pose_from
 
-_MOST = 10_000
+_MOST = 1_000_000
 
 
 def grid_from(
@@ -29,16 +29,20 @@ def _values(name: str, text: str, coordinates: Mapping[str, Dimension]) -> tuple
         return _numbers(name, text.split(","), coordinates)
     first, last, count = _range(name, text)
     low, high = _numbers(name, (first, last), coordinates)
+    if low == high:
+        raise PrsError(f"--grid {name}: found '{text}' from a value to the same, expected two that differ")
     return tuple(np.linspace(low, high, count).tolist())
 
 
 def _range(name: str, text: str) -> tuple[str, str, int]:
     pieces = text.split(":")
-    count = int(pieces[-1]) if len(pieces) == 3 and pieces[-1].isdecimal() else 0
+    if len(pieces) != 3 or not re.fullmatch(r"\s*[0-9]{1,9}\s*", pieces[-1]):
+        expected = "expected a list such as 10,20,30deg or a range first:last:count such as 0:30deg:4"
+        raise PrsError(f"--grid {name}: found '{text}', {expected}")
+    count = int(pieces[-1])
     if not 2 <= count <= _MOST:
-        raise PrsError(
-            f"--grid {name}: found '{text}', expected a list such as 10,20,30deg or a range such as 0:30deg:4"
-        )
+        expected = f"expected from 2 to {_MOST:,}; a single one is written without colons"
+        raise PrsError(f"--grid {name}: found {count:,} values in '{text}', {expected}")
     return pieces[0], pieces[1], count
 
 

@@ -7,10 +7,10 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-from ..errors import PrsError
 from ..machine import Machine
 from ..readable import pose_text
-from ..sweep.request import QUANTITIES
+from ..sweep.poses import Poses, poses_of
+from ..sweep.request import QUANTITIES, Request
 from . import machine_argument, pose_argument
 from .grids import grid_from
 from .pose_list import poses_from_file
@@ -68,6 +68,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="DIR",
         help="keep finished pieces there, and go on from them after an interruption",
     )
+    parser.add_argument(
+        "--cluster", metavar="ADDRESS", help="compute on the workers of this Dask scheduler, such as tcp://host:8786"
+    )
     machine_argument.add_settings(parser)
 
 
@@ -75,12 +78,11 @@ def run(options: argparse.Namespace) -> dict[str, Any]:
     """Sweep the workspace, and write where asked."""
     from ..sweep.files import PICTURES, check_file, save
     from ..sweep.picture import check_drawing
-    from ..sweep.request import Request
+    from ..sweep.run import sweep
     from ..sweep.summary import summary
 
     band = None if options.band is None else tuple(options.band)
-    quantities = tuple(dict.fromkeys(["frequency", *options.quantity]))
-    Request(options.count, quantities, options.tolerance, band)
+    request = Request(options.count, ("frequency", *options.quantity), options.tolerance, band)
     for file in options.output:
         check_file(file)
         if file.suffix.lower() in PICTURES:
@@ -89,15 +91,7 @@ def run(options: argparse.Namespace) -> dict[str, Any]:
     poses = _poses(machine, options)
     start = perf_counter()
     with bar(quiet=options.quiet, unit="poses") as progress:
-        data = machine.sweep(
-            **poses,
-            n_modes=options.count,
-            quantities=quantities,
-            tolerance=options.tolerance,
-            band=band,
-            progress=progress,
-            store=options.store,
-        )
+        data = sweep(machine, poses, request, progress, options.store, options.cluster)
     seconds = perf_counter() - start
     for file in options.output:
         save(data, file, options.draw)
@@ -120,13 +114,7 @@ def show(outcome: dict[str, Any]) -> str:
     return "\n".join([*lines, *(f"written to {file}" for file in outcome["files"])])
 
 
-def _poses(machine: Machine, options: argparse.Namespace) -> dict[str, Any]:
-    """The arguments of Machine.sweep that say where."""
-    coordinates = machine.kinematics.task.coordinates
+def _poses(machine: Machine, options: argparse.Namespace) -> Poses:
     if options.poses is not None:
-        return {"poses": poses_from_file(options.poses, machine)}
-    grid = grid_from(options.grid, coordinates)
-    clash = set(grid) & {"poses", "n_modes", "quantities", "tolerance", "band", "progress", "store"}
-    if clash:
-        raise PrsError(f"--grid {', '.join(clash)}: no pose coordinate; known: {', '.join(machine.pose_names)}")
-    return dict(grid)
+        return poses_of(machine, {}, poses_from_file(options.poses, machine))
+    return poses_of(machine, grid_from(options.grid, machine.kinematics.task.coordinates))

@@ -6,6 +6,7 @@ import csv
 import io
 import shutil
 import tempfile
+from collections.abc import Iterator
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 
 PICTURES = (".png", ".svg", ".pdf")
 SUFFIXES = (".nc", ".zarr", ".csv", *PICTURES)
+_LINES = 20_000  # of a table, in memory at a time
 _ENGINES: dict[str, Literal["h5netcdf", "netcdf4"]] = {"h5netcdf": "h5netcdf", "netCDF4": "netcdf4"}
 
 
@@ -77,7 +79,32 @@ def _write_zarr(data: xarray.Dataset, path: Path) -> None:
 
 
 def _write_csv(data: xarray.Dataset, path: Path) -> None:
-    """A line each pose; a column for each coordinate, and for each entry of each variable, unit in brackets."""
+    """A line each pose, some thousands of them in memory at a time."""
+    with whole(path) as file:
+        text = io.TextIOWrapper(file, encoding="utf-8", newline="")
+        writer = csv.writer(text, lineterminator="\n")
+        for k, slab in enumerate(_slabs(data)):
+            columns = _table(slab)
+            if k == 0:
+                writer.writerow(columns)
+            writer.writerows(zip(*(column.tolist() for column in columns.values()), strict=True))
+        text.detach()  # which flushes, and leaves the file open
+
+
+def _slabs(data: xarray.Dataset) -> Iterator[xarray.Dataset]:
+    """The dataset piece by piece along its first coordinate."""
+    reason = data["reason"]
+    if not reason.dims:
+        yield data
+        return
+    first, length = reason.dims[0], reason.shape[0]
+    step = max(1, _LINES * length // reason.size)
+    for start in range(0, length, step):
+        yield data.isel({first: slice(start, start + step)})
+
+
+def _table(data: xarray.Dataset) -> dict[str, NDArray[np.generic]]:
+    """A column for each coordinate, and for each entry of each variable, unit in brackets."""
     dims = data["reason"].dims
     columns: dict[str, NDArray[np.generic]] = {}
     for name, coordinate in data.coords.items():
@@ -86,12 +113,7 @@ def _write_csv(data: xarray.Dataset, path: Path) -> None:
             columns[f"{name} [{coordinate.attrs['units']}]"] = spread.values.ravel()
     for name, variable in data.data_vars.items():
         columns |= _columns(str(name), variable, len(dims))
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(columns)
-    writer.writerows(zip(*(column.tolist() for column in columns.values()), strict=True))
-    with whole(path) as file:
-        file.write(text.getvalue().encode())
+    return columns
 
 
 def _columns(name: str, variable: xarray.DataArray, pose_dims: int) -> dict[str, NDArray[np.generic]]:

@@ -27,18 +27,32 @@ DRAWABLE: Mapping[str, str] = MappingProxyType(
 """What can be drawn, and the quantity it comes with."""
 
 
+_ALIKE = 1e-9  # relative: poses that symmetry makes alike, parted by rounding only
+
+
+def extreme(values: FloatArray, sign: int) -> tuple[int, ...]:
+    """The place of the lowest (sign -1) or largest value (1); the first of those that are alike."""
+    signed = -sign * values
+    best = np.nanmin(signed)
+    flat = np.flatnonzero(signed <= best + _ALIKE * abs(best))[0]
+    return tuple(int(k) for k in np.unravel_index(flat, values.shape))
+
+
 @dataclass(frozen=True, eq=False)
 class Panel:
-    """One map: values over the poses, their unit, and which end is the worst: -1 the lowest, 1 the largest, 0 none."""
+    """One map: values over the poses, their unit, and which end is the worst: -1 the lowest, 1 the largest, 0 none.
+
+    modes: how many there are, where the values are their numbers.
+    """
 
     title: str
     values: FloatArray
     unit: str
     worst: int
+    modes: int = 0
 
     def worst_place(self) -> tuple[int, ...]:
-        flat = np.nanargmin(-self.worst * self.values)
-        return tuple(int(k) for k in np.unravel_index(flat, self.values.shape))
+        return extreme(self.values, self.worst)
 
     def value_text(self) -> str:
         return f"{self.values[self.worst_place()]:.5g} {self.unit}"
@@ -64,10 +78,15 @@ def panels_of(data: xarray.Dataset, quantity: str) -> list[Panel]:
     last = str(variable.dims[-1])
     word, unit = "receptance along" if last == "axis" else "mode", str(variable.attrs.get("units", "1"))
     characters = variable.coords.get("character")
-    worst = 0 if quantity == "identity" else 1 if quantity == "frf_peak" else -1
+    if quantity == "identity":
+        values = np.where(values > 0.0, values, np.nan)
+        return [Panel(f"mode {k + 1}", values[..., k], "mode", 0, values.shape[-1]) for k in range(values.shape[-1])]
     return [
         _scaled(
-            f"{word} {name}" + ("" if characters is None else f": {characters.values[k]}"), values[..., k], unit, worst
+            f"{word} {name}" + ("" if characters is None else f": {characters.values[k]}"),
+            values[..., k],
+            unit,
+            1 if quantity == "frf_peak" else -1,
         )
         for k, name in enumerate(data[last].values)
     ]

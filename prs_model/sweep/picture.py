@@ -19,14 +19,12 @@ from ..description.units import Dimension
 from ..errors import MissingExtraError, PrsError, UnknownNameError
 from ..modes.figure_file import write_figure
 from ..readable import readable
+from .contours import COLOURS, add_bar, fill, halo, mark
 from .panels import DRAWABLE, Panel, panels_of
 
 if TYPE_CHECKING:
     import xarray
 
-_COLOURS = "cividis"  # the same to the colour-blind
-_LEVELS = 12
-_MOST_POINTS = 400  # along a side of a contour map: more than a panel has pixels
 _READABLE = {"rad": (180.0 / np.pi, "deg"), "m": (1e3, "mm")}
 
 
@@ -133,49 +131,21 @@ def _polar(figure: Any, axes: Any, data: xarray.Dataset, panel: Panel) -> None:
     angles = turn.values
     if np.ptp(angles) < 2.0 * np.pi - 1e-9:
         angles, panel = np.append(angles, angles[0] + 2.0 * np.pi), panel.closed()
-    _contours(figure, axes, angles, radius.shown, panel)
+    fill(figure, axes, angles, radius.shown, panel)
     axes.set_rlabel_position(22.5)
     axes.tick_params(labelsize=7)
+    axes.set_rlim(0.0, radius.shown[-1])
     axes.set_rticks(np.linspace(radius.shown[0], radius.shown[-1], 4)[1:])
+    for label in axes.get_yticklabels():
+        label.set_path_effects(halo())
     axes.grid(alpha=0.25)
     figure.supxlabel(f"radius: {radius.label}; angle: {turn.label}", fontsize=9)
 
 
 def _rectangular(figure: Any, axes: Any, data: xarray.Dataset, panel: Panel) -> None:
-    y, x = (_axis(data, str(name)) for name in data["reason"].dims)
-    _contours(figure, axes, x.shown, y.shown, panel)
+    x, y = (_axis(data, str(name)) for name in data["reason"].dims)
+    fill(figure, axes, x.shown, y.shown, panel.transposed())
     _name_axes(axes, x.label, y.label)
-
-
-def _contours(figure: Any, axes: Any, x: FloatArray, y: FloatArray, panel: Panel) -> None:
-    """Filled and labelled contours of values (y, x), the worst marked, what is unreachable hatched."""
-    rows, columns = _thinned(len(y)), _thinned(len(x))
-    values = panel.values[np.ix_(rows, columns)]
-    if np.isnan(values).any():
-        everywhere = np.ones((2, len(columns)))
-        axes.contourf(x[columns], y[[0, -1]], everywhere, levels=[0.5, 1.5], colors=["white"], hatches=["////"])
-    if np.nanmax(values) - np.nanmin(values) > 1e-9 * np.nanmax(np.abs(values)):
-        filled = axes.contourf(x[columns], y[rows], values, levels=_LEVELS, cmap=_COLOURS)
-        lines = axes.contour(x[columns], y[rows], values, levels=filled.levels[::2], colors="black", linewidths=0.5)
-        _label(axes, lines)
-        figure.colorbar(filled, ax=axes, shrink=0.8, pad=0.08).set_label(panel.unit, fontsize=8)
-    if panel.worst:
-        row, column = panel.worst_place()
-        _mark(axes, x[column], y[row])
-
-
-def _label(axes: Any, lines: Any) -> None:
-    """The level of each contour on its longest piece, no two at the same place along it."""
-    from matplotlib.patheffects import withStroke
-
-    step = np.min(np.diff(lines.levels), initial=np.inf)
-    digits = 2 + max(1, ceil(np.log10(np.max(np.abs(lines.levels)) / step))) if np.isfinite(step) else 4
-    for k, (level, pieces) in enumerate(zip(lines.levels, lines.allsegs, strict=True)):
-        longest = max(pieces, key=len, default=())
-        if len(longest) > 2:
-            x, y = longest[int(len(longest) * ((0.5 + 0.382 * k) % 1.0))]
-            halo = [withStroke(linewidth=1.5, foreground="white")]
-            axes.text(x, y, f"{level:.{digits}g}", fontsize=6, ha="center", va="center", path_effects=halo)
 
 
 def _curve(figure: Any, axes: Any, data: xarray.Dataset, panel: Panel) -> None:
@@ -183,7 +153,7 @@ def _curve(figure: Any, axes: Any, data: xarray.Dataset, panel: Panel) -> None:
     axes.plot(axis.shown, values, color="C0")
     if panel.worst:
         (low,) = panel.worst_place()
-        _mark(axes, axis.shown[low], values[low])
+        mark(axes, axis.shown[low], values[low])
     for start, stop in _runs(np.isnan(values)):
         axes.axvspan(axis.shown[start], axis.shown[stop], facecolor="none", edgecolor="grey", hatch="////", linewidth=0)
     _name_axes(axes, axis.label, panel.unit)
@@ -195,17 +165,13 @@ def _points(figure: Any, axes: Any, data: xarray.Dataset, panel: Panel) -> None:
     along = [_axis(data, str(name)) for name in data.coords if data[name].dims == ("pose",)]
     x, y = ([axis for axis in along if np.ptp(axis.values) > 0.0] + along * 2)[:2]
     there = np.isfinite(panel.values)
-    drawn = axes.scatter(x.shown[there], y.shown[there], c=panel.values[there], cmap=_COLOURS, s=12)
+    drawn = axes.scatter(x.shown[there], y.shown[there], c=panel.values[there], cmap=COLOURS, s=12)
     axes.plot(x.shown[~there], y.shown[~there], "x", color="grey", markersize=4)
     if panel.worst:
         (low,) = panel.worst_place()
-        _mark(axes, x.shown[low], y.shown[low])
-    figure.colorbar(drawn, ax=axes, shrink=0.8).set_label(panel.unit, fontsize=8)
+        mark(axes, x.shown[low], y.shown[low])
+    add_bar(figure, axes, drawn, panel.unit)
     _name_axes(axes, x.label, y.label)
-
-
-def _mark(axes: Any, x: float, y: float) -> None:
-    axes.plot(x, y, marker="v", color="white", markeredgecolor="black", markersize=8, clip_on=False, zorder=5)
 
 
 def _name_axes(axes: Any, x: str, y: str) -> None:
@@ -226,17 +192,13 @@ def _subtitle(data: xarray.Dataset, quantity: str) -> str:
     what = str(data[quantity].attrs.get("long_name", quantity))
     if quantity.startswith("frf"):
         what += f" of {data.attrs['band_low_hz']:g} .. {data.attrs['band_high_hz']:g} Hz"
-    return ", ".join([what, *fixed])
+    missing = "crosses" if data["reason"].dims == ("pose",) else "hatching"
+    return ", ".join([what, *fixed]) + (f"; {missing}: out of reach" if data["reason"].values.any() else "")
 
 
 def _value(coordinate: xarray.DataArray) -> str:
     kind = Dimension(angle=1) if coordinate.attrs.get("units") == "rad" else Dimension(length=1)
     return f"{coordinate.name} {readable(float(coordinate), kind)}"
-
-
-def _thinned(count: int) -> NDArray[np.intp]:
-    """Which of so many places are drawn, the first and the last among them."""
-    return np.unique(np.linspace(0, count - 1, min(count, _MOST_POINTS)).round().astype(np.intp))
 
 
 def _runs(marks: NDArray[np.bool_]) -> list[tuple[int, int]]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..description.units import SI
+from .panels import extreme
 
 if TYPE_CHECKING:
     import xarray
@@ -44,7 +45,7 @@ def _sentences(flags: Mapping[str, str]) -> list[str]:
 
 def _extremes(frequency: xarray.DataArray, names: tuple[str, ...]) -> dict[str, Any]:
     values = frequency.values
-    low, high = (np.unravel_index(each(values), values.shape) for each in (np.nanargmin, np.nanargmax))
+    low, high = extreme(values, -1), extreme(values, 1)
 
     def at(place: Any) -> dict[str, float]:
         there = frequency[place]

@@ -11,6 +11,7 @@ import pytest
 from prs_model import load_machine
 from prs_model.cli import main
 from prs_model.cli.progress import line
+from prs_model.sweep.panels import extreme
 
 GRID = ["--grid", "x=-2mm:2mm:4", "z=89,90,120mm"]
 
@@ -67,7 +68,13 @@ def test_wrong_lists_are_told_with_their_line(tmp_path, capsys, text, words):
     ("arguments", "words"),
     [
         (["--grid", "nutation=1"], "unknown pose coordinate 'nutation'"),
-        (["--grid", "poses=1"], "--grid poses: no pose coordinate"),
+        (["--grid", "poses=1"], "unknown pose coordinate 'poses'"),
+        (["--grid", "x=0:1mm:x"], "found '0:1mm:x', expected a list such as 10,20,30deg or a range first:last:count"),
+        (["--grid", "x=0:1mm:1"], "found 1 values in '0:1mm:1', expected from 2 to 1,000,000"),
+        (["--grid", "x=1mm:1mm:5"], "found '1mm:1mm:5' from a value to the same, expected two that differ"),
+        (["--grid", "x=0:one:3"], "found unit 'one', expected one of m, cm, mm"),
+        (["--grid", "x=0:1mm:1000000", "y=0:1mm:1000000"], "results of 1,000,000,000,000 poses take 99,000.0 GB"),
+        ([*GRID, "-o", "nowhere/map.nc"], "nowhere/map.nc: cannot be written"),
         ([*GRID, "--quantity", "frf_peak"], "band: found none"),
         ([*GRID, "--quantity", "stiffness"], "unknown quantity 'stiffness'"),
         ([*GRID, "--tolerance", "1"], "tolerance: found 1.0"),
@@ -80,6 +87,58 @@ def test_wrong_arguments_are_told_before_the_work(tmp_path, monkeypatch, capsys,
     assert main(["map", "hexapod", *arguments]) == 1
     assert words in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("command", ["sweep.run._pieces", "sweep.files._table"])
+def test_an_interruption_leaves_no_file(tmp_path, monkeypatch, capsys, command):
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(f"prs_model.{command}", interrupted)
+    assert main(["map", "hexapod", *GRID, "-n", "2", "-o", str(tmp_path / "map.csv")]) == 1
+    assert "interrupted" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_long_table_is_written_in_slabs(tmp_path, monkeypatch):
+    files = [tmp_path / "at_once.csv", tmp_path / "in_slabs.csv"]
+    assert main(["map", "hexapod", *GRID, "-n", "2", "-o", str(files[0])]) == 0
+    monkeypatch.setattr("prs_model.sweep.files._LINES", 4)
+    assert main(["map", "hexapod", *GRID, "-n", "2", "-o", str(files[1])]) == 0
+    at_once, in_slabs = (file.read_text() for file in files)
+    assert at_once == in_slabs
+    assert len(at_once.splitlines()) == 13
+
+
+def test_identities_are_drawn_though_each_is_one_number_all_over(tmp_path):
+    file = tmp_path / "identity.png"
+    arguments = ["map", "hexapod", *GRID, "-n", "2", "--quantity", "identity", "--draw", "identity", "-o", str(file)]
+    assert main(arguments) == 0
+    picture = pytest.importorskip("PIL.Image").open(file).convert("RGB")
+    shares = {colour: number / (picture.width * picture.height) for number, colour in picture.getcolors(2**24)}
+    coloured = [colour for colour, share in shares.items() if share > 0.05 and len(set(colour)) > 1]
+    assert len(coloured) == 2
+
+
+def test_the_worst_of_poses_that_are_alike_is_the_first():
+    values = np.array([[3.0, 2.0 + 1e-12], [2.0, np.nan]])
+    assert extreme(values, -1) == (0, 1)
+    assert extreme(values, 1) == (0, 0)
+
+
+def test_an_address_without_a_scheduler_is_told(capsys):
+    pytest.importorskip("distributed")
+    assert main(["map", "hexapod", *GRID, "-n", "2", "--cluster", "udp:nowhere"]) == 1
+    assert "cluster: no scheduler of Dask answers at 'udp:nowhere'" in capsys.readouterr().err
+
+
+def test_a_grid_may_go_backwards(capsys):
+    assert main(["map", "hexapod", "--grid", "x=2mm:-2mm:401", "-n", "1", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert main(["map", "hexapod", "--grid", "x=-2mm:2mm:401", "-n", "1", "--json"]) == 0
+    forward = json.loads(capsys.readouterr().out)
+    assert found["modes"][0]["lowest_hz"] == pytest.approx(forward["modes"][0]["lowest_hz"], rel=2e-6)
+    assert found["modes"][0]["median_hz"] == pytest.approx(forward["modes"][0]["median_hz"], rel=2e-6)
 
 
 def test_the_bar_says_rate_and_time_left():
