@@ -161,7 +161,7 @@ class Machine:
         their reference values. poses: a list (N, d) in their place, columns as in `pose_names`.
         quantities: of prs_model.sweep.QUANTITIES. tolerance: relative, of every frequency beside the dense
         eigenproblem. band: (lowest, highest) [Hz] in which resonance peaks are sought. exact_counts: test at every
-        pose, by the whole system, that no mode was missed, for a tenth of the time that solving it would take.
+        pose, by the whole system, that no mode was missed, for about a third of the time that solving it takes.
         progress: called with the number of poses done and of all. store: a folder that keeps what is finished, so that
         the same call goes on after an interruption. cluster: a Dask client, or the address of its scheduler.
         Unreachable poses are marked in `reason` and have NaN. Raises PrsError for what cannot be asked of the machine.
