@@ -170,9 +170,13 @@ def ritz_on_inverse(
     if request.quantities != ("frequency",):
         raise NotSmoothError("shapes in one basis for all poses give frequencies only")
     n, values = request.n_modes, np.concatenate([each.modes.eigenvalues for each in samples])
+    if values.shape[1] < n:
+        raise NotSmoothError(f"only {values.shape[1]} modes")
     shapes = np.concatenate([each.modes.shapes[:, :, : n + _FOLLOWED] for each in samples])
     columns = shapes.swapaxes(0, 1).reshape(shapes.shape[1], -1)
     shift = solver.shift if solver.shift < 0.0 else -1e-2 * float(values[:, 0].max())
     highest = float(values[:, n - 1].max())
     basis = RitzBasis(leading_shapes(home.systems.mass[0], columns, size), shift, _ABOVE * highest)
+    if basis.first < n + _FOLLOWED:
+        raise NotSmoothError(f"a basis of {basis.size} shapes is too small")
     return RitzOnInverse(basis, request, 1.0 / (highest - shift))

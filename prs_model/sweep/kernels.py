@@ -31,3 +31,10 @@ def negatives(packed: FloatArray, p: int, slack: float) -> IntArray:
     values = np.linalg.eigvalsh(unpacked(packed, p))
     surely, perhaps = (values < -slack).sum(axis=1), (values < slack).sum(axis=1)
     return np.where(surely == perhaps, surely, -1)
+
+
+def as_frobenius(packed: FloatArray) -> FloatArray:
+    """Packed triangles (.., p (p + 1) / 2), here last, whose norm is the Frobenius norm of the symmetric matrices."""
+    p = int((np.sqrt(8.0 * packed.shape[-1] + 1.0) - 1.0) / 2.0 + 0.5)
+    rows, columns = np.tril_indices(p)
+    return packed * np.where(rows == columns, 1.0, np.sqrt(2.0))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -29,7 +30,9 @@ from .symmetry import Folded, folded
 if TYPE_CHECKING:
     from ..machine import Machine
 
-INTERPOLATED = 1  # code of `proof`
+INTERPOLATED, COUNTED = 1, 3  # codes of `proof`
+
+_log = logging.getLogger("prs_model")
 _NEAR_LIMIT = 1e-6  # m, rad: within which interpolated joint values are worked out exactly
 
 
@@ -60,7 +63,7 @@ class Plan:
             block, joints = {name: each[places] for name, each in block.items()}, joints[:, places]
         sure = block.pop("sure")
         block["reason"] = self._reasons(found, joints, start, stop)
-        block["proof"] = np.full(stop - start, INTERPOLATED, dtype=np.int8)
+        block["proof"] = np.full(stop - start, COUNTED if self.request.exact_counts else INTERPOLATED, dtype=np.int8)
         self._solve(block, np.flatnonzero(~sure & (block["reason"] == 0)), start)
         _forget(block, block["reason"] != 0)
         return block
@@ -112,7 +115,7 @@ class Plan:
     def _reasons(self, found: Found, joints: FloatArray, start: int, stop: int) -> NDArray[np.int16]:
         """Codes of joints beyond their limits (m,), from values (j, m) of those that come near [m, rad].
 
-        What is near a limit is worked out exactly, and so is what lies beyond if the values are those of an image pose.
+        What is near a limit is worked out exactly. Symmetry is used only where no joint comes near one.
         """
         if not found.joints:
             return np.zeros(stop - start, dtype=np.int16)
@@ -120,7 +123,7 @@ class Plan:
         q = np.tile(tree.middle, (stop - start, 1))
         q[:, list(found.joints)] = joints.T
         room = np.minimum(q - tree.lower, tree.upper - q).min(axis=1)
-        doubtful = np.flatnonzero((room if found.symmetry is not None else np.abs(room)) < _NEAR_LIMIT)
+        doubtful = np.flatnonzero(np.abs(room) < _NEAR_LIMIT)
         if doubtful.size:
             q[doubtful] = self.machine.kinematics.solve_batch(self.poses.block(start, stop)[doubtful]).q
         return reason_codes(self.machine.kinematics.reach, q)
@@ -149,9 +152,10 @@ def make_plan(machine: Machine, poses: Poses, request: Request, pool: ThreadPool
 
 
 def best_kernels() -> Any:
-    """The compiled kernels where numba is installed, else those in NumPy."""
+    """The compiled kernels where numba is installed and has a place for what it compiles, else those in NumPy."""
     try:
         from . import kernels_jit
-    except ImportError:
+    except (ImportError, RuntimeError) as error:
+        _log.info("sweep: kernels in NumPy (%s)", error)
         return plain
     return kernels_jit

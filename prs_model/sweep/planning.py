@@ -17,6 +17,7 @@ from .box_of import MOST_COORDINATES, Shape, shape_of
 from .exact import Solved, Solver
 from .in_frame import is_possible, reaches
 from .interpolation import Interpolation
+from .kernels import as_frobenius
 from .poses import Poses
 from .request import Request
 from .ritz import RitzInterpolation
@@ -32,10 +33,12 @@ Found = Interpolation | RitzInterpolation
 
 _FEWEST = 400  # poses that are worth an interpolation
 _LINE = (17, 33, 65, 129)  # nodes of the lines on which convergence is tried
-_RITZ_SIZES = (24, 36, 54)  # shapes of a basis
-_WORTH_RITZ = 3000  # poses that are worth a basis
+_RITZ_SIZES = (24, 36, 54, 80)  # shapes of a basis
+_COARSE = 9  # nodes along each axis, at which joints are held against their limits
+_WORTH_RITZ = 10_000  # poses that are worth a basis
 _SCATTERED = 48  # poses whose shapes it is made of, beside those on the lines
 _SHARE = 1.4  # of the error allowed over the square of the number of axes, for what a line leaves out
+_UNSEEN = 8  # of the last terms along a line; every third or fourth order may be all there is
 _ENLARGED = 1.2  # more nodes along an axis whose tail is too long
 _ATTEMPTS = 4
 _HELD_OUT = 24
@@ -59,7 +62,10 @@ def interpolated(
     if not is_possible(request, machine.description.file.damping):
         return None, "resonance peaks under damping of joints"
     try:
-        return _Planner.of(machine, poses, request, pool).plan()
+        planner = _Planner.of(machine, poses, request, pool)
+        if planner.symmetry is not None and planner.comes_near_limits():
+            planner = _Planner.of(machine, poses, request, pool, by_symmetry=False)
+        return planner.plan()
     except (NotSmoothError, PrsError) as error:
         return None, f"no interpolation: {error}"
 
@@ -78,13 +84,15 @@ class _Planner:
     symmetry: Symmetry | None
 
     @classmethod
-    def of(cls, machine: Machine, poses: Poses, request: Request, pool: ThreadPoolExecutor) -> _Planner:
+    def of(
+        cls, machine: Machine, poses: Poses, request: Request, pool: ThreadPoolExecutor, by_symmetry: bool = True
+    ) -> _Planner:
         shape = shape_of(machine.kinematics, poses)
         home = machine.assemble(machine.kinematics.solve_batch(shape.home[None])[0])
         shift, _ = positive_definite_pencil(home.mass, home.stiffness)
         solver = Solver(machine, _modes_needed(home, request), shift)
         found, distinct = None, poses
-        if request.quantities == ("frequency",):
+        if by_symmetry and request.quantities == ("frequency",):
             found = symmetry_of(shape, _like_limbs(machine), request.tolerance, _logarithms(solver, request, pool))
         if found is not None:
             distinct = folded(found, poses).distinct
@@ -146,10 +154,10 @@ class _Planner:
             axis, _ = self.shape.line(k, count)
             if count > _LINE[0]:
                 solved = self._line(k, count)
-            matrices = np.concatenate([approach.on_line(each) for each in solved])
+            matrices = np.concatenate([as_frobenius(approach.on_line(each)) for each in solved])
             sizes = np.linalg.norm(axis.transform @ matrices, axis=1)
             rest = np.cumsum(sizes[::-1])[::-1]
-            if rest[-4] < most:
+            if rest[-_UNSEEN] < most:
                 return int(np.flatnonzero(rest < most)[0]) + 2
         raise NotSmoothError(f"{self.poses.names[self.shape.columns[k]]}: {axis.count} nodes along it are not enough")
 
@@ -169,8 +177,8 @@ class _Planner:
             name: slice(stop - each.shape[1], stop) for (name, each), stop in zip(flat.items(), stops, strict=True)
         }
         nodes = box.unfold(np.hstack(list(flat.values())))
-        tails = box.tail(nodes[..., parts[approach.main]])
-        slack = 2.0 * sum(box.tail(nodes[..., parts["complement"]])) if "complement" in parts else 0.0
+        tails = box.tail(as_frobenius(nodes[..., parts[approach.main]]))
+        slack = 2.0 * sum(box.tail(as_frobenius(nodes[..., parts["complement"]]))) if "complement" in parts else 0.0
         found = approach.interpolation(
             {name: each.shape[1:] for name, each in values.items()},
             box=box,
@@ -182,6 +190,14 @@ class _Planner:
             symmetry=self.symmetry,
         )
         return found, tails
+
+    def comes_near_limits(self) -> bool:
+        """Whether a joint does somewhere, among all poses that are alike: limbs may be alike but for their limits."""
+        poses = self.shape.box((_COARSE,) * len(self.shape.columns)).poses()
+        if self.symmetry is not None:
+            poses = self.symmetry.images(poses)
+        q = self.machine.kinematics.solve_batch(poses).q
+        return bool(np.isnan(q).any() or self._near_limits(q))
 
     def _near_limits(self, joints: FloatArray) -> list[int]:
         """The joints that come near a limit somewhere, from their values at the nodes (N, j) [m, rad]."""
@@ -213,7 +229,7 @@ class _Planner:
     def _in_words(self, found: Found, approach: Approach, share: float, worst: float) -> str:
         nodes = f"{len(found.box.solved)} nodes ({' x '.join(map(str, found.box.shape))})"
         alike = "" if self.symmetry is None else f"; symmetric within {self.symmetry.defect / 2.0:.1e}"
-        sure = "" if share == 1.0 else f", {share:.0%} of which it covers,"
+        sure = "" if share == 1.0 else f", {share:.0%} of which it covers"
         checked = f"largest error at the corners and {_HELD_OUT} poses, solved exactly{sure}, {worst:.1e}"
         return f"{nodes}, {approach.words()}{alike}; {checked}"
 

@@ -9,7 +9,8 @@ which are below the exact mu = 1 / (lambda - s): frequencies come out as upper b
 far less harm than in V^T K V, where it strains stiff joints. A is smooth in the pose as long as s lies below all
 eigenvalues, whatever the frequencies do, and is interpolated.
 
-The leading block of A is that of the first shapes alone; the two differ by more than what the whole basis still lacks.
+The leading block of A is that of the first shapes alone. By how much the two differ estimates what the whole basis
+still lacks; twice that is taken for a bound, which holds as long as further shapes add less than the last ones did.
 """
 
 from __future__ import annotations
@@ -25,6 +26,8 @@ from . import kernels as plain
 from .frames import complements
 from .low_modes import pencils
 from .tensor import Tensor
+
+_LACKING = 2.0  # times what the last quarter of the shapes adds
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,8 +106,8 @@ class RitzInterpolation(Tensor):
             for each in (matrices, matrices[:, : self.basis.first, : self.basis.first])
         )
         eigenvalues = np.maximum(1.0 / mu + self.shift, np.finfo(float).tiny)
-        off = (np.abs(mu - less) + self.error) / mu**2
-        return np.sqrt(eigenvalues) / (2.0 * np.pi), off / (2.0 * eigenvalues) + self.asymmetry / 2.0
+        off = (_LACKING * np.abs(mu - less) + self.error + self.asymmetry * mu) / mu**2
+        return np.sqrt(eigenvalues) / (2.0 * np.pi), off / (2.0 * eigenvalues)
 
     def complete(self, values: FloatArray, kernels: Any = plain) -> BoolArray:
         """Whether as many Ritz values as eigenvalues lie below the level (m,), so that none is missing."""

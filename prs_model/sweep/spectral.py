@@ -19,6 +19,7 @@ from ..arrays import FloatArray, IntArray
 Kind = Literal["chebyshev", "fourier", "given"]
 
 _LAST = 2  # coefficients per axis whose size says how well the rest converged
+_ORDERS = 8  # terms of four orders of a periodic coordinate
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,9 +116,9 @@ class Box:
         return np.concatenate([opposite, half], axis=a)
 
     def tail(self, tensor: FloatArray) -> tuple[float, ...]:
-        """For each axis, the norm of the last two terms along it, the largest on any line of nodes; 0 for given ones.
+        """For each axis, the norm of the last terms along it, the largest on any line of nodes; 0 for given ones.
 
-        No value on these lines is further than that from the interpolant without these terms.
+        It says how far the interpolant without these terms is off: more than the error, if the terms go on to fall.
         """
         return tuple(self._tail(k, axis, tensor) for k, axis in enumerate(self.axes))
 
@@ -125,8 +126,10 @@ class Box:
     def _tail(k: int, axis: Axis, tensor: FloatArray) -> float:
         if axis.given is not None:
             return 0.0
-        last = np.tensordot(axis.transform[-_LAST:], tensor, (1, k))
-        return float(np.linalg.norm(last, axis=-1).sum(axis=0).max())
+        sizes = np.linalg.norm(np.tensordot(axis.transform, tensor, (1, k)), axis=-1).reshape(axis.count, -1)
+        if axis.kind == "chebyshev":
+            return float(sizes[-_LAST:].sum(axis=0).max())
+        return 2.0 * _LAST * float(_last_order(sizes).max())
 
     def coefficients(self, tensor: FloatArray) -> FloatArray:
         """Of the products of terms along the axes, in the shape of the tensor; values where nodes are given."""
@@ -141,6 +144,18 @@ class Box:
         order = np.argsort(sizes)
         kept = np.sort(order[np.cumsum(sizes[order]) > negligible])
         return Terms(self, np.array(np.unravel_index(kept, self.shape)), coefficients[kept])
+
+
+def _last_order(sizes: FloatArray) -> FloatArray:
+    """Of terms 1, cos, sin, cos 2 .. (n, lines), what the next to last order would be if all were there.
+
+    A machine of n like limbs may have every n-th order only. From the largest of the last four orders the terms fall on
+    as they fell from the four before, by one order.
+    """
+    last = sizes[-_ORDERS:].max(axis=0)
+    before = sizes[-2 * _ORDERS : -_ORDERS].max(axis=0, initial=0.0)
+    fall = np.divide(last, before, out=np.ones_like(last), where=before > last)
+    return np.asarray(last * fall**0.25)
 
 
 def on_grid(tensor: FloatArray, weights: Sequence[FloatArray]) -> FloatArray:

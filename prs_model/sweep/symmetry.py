@@ -48,6 +48,16 @@ class Symmetry:
         away = np.mod(values - self.plane, self.period)
         return np.asarray(self.plane + np.minimum(away, self.period - away))
 
+    def images(self, poses: FloatArray) -> FloatArray:
+        """All poses (.., d) that are alike to some of poses (N, d)."""
+        values, turns = poses[:, self.column], np.arange(round(_TURN / self.period))
+        every = [values] if self.plane is None else [values, 2.0 * self.plane - values]
+        result = []
+        for alike in (each + turn * self.period for each in every for turn in turns):
+            result.append(poses.copy())
+            result[-1][:, self.column] = alike
+        return np.concatenate(result)
+
 
 @dataclass(frozen=True, eq=False)
 class Folded:
@@ -105,14 +115,15 @@ def symmetry_of(shape: Shape, likes: set[int], tolerance: float, logarithms: Log
         return None
     start = float(shape.bounds[shape.columns.index(column), 0])
     for plane in start + period / _PLANES * np.arange(_PLANES) / 2.0:
-        if differs(2.0 * plane - values, 1) < most and (both := max(defect, differs(2.0 * plane - values))) < most:
+        if differs(2.0 * plane - values, 1) < most and (both := defect + differs(2.0 * plane - values)) < most:
             return Symmetry(column, period, float(plane), start, both)
     return Symmetry(column, period, None, start, defect)
 
 
 def _trials(shape: Shape) -> FloatArray:
     places = np.random.default_rng(4).uniform(size=(_TRIALS, len(shape.columns)))
-    places[: _TRIALS // 2] **= 0.25  # most at the far ends, where differences are largest
+    far = [not turns for turns in shape.periodic]
+    places[: _TRIALS // 2, far] **= 0.25  # most at the far ends, where differences are largest
     poses = np.tile(shape.fixed, (_TRIALS, 1))
     poses[:, list(shape.columns)] = shape.bounds[:, 0] + places * np.ptp(shape.bounds, axis=1)
     return poses

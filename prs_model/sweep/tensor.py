@@ -46,32 +46,40 @@ class Tensor:
             chunks = [self._terms.at(points[k : k + _POINTS]) for k in range(0, len(points), _POINTS)]
             return np.ascontiguousarray(np.concatenate(chunks).T)
         axes = [poses.axes[column] for column in self.box.columns]
-        leading = _leading([len(axis) for axis in axes], stop - start)
-        slab = math.prod(len(axis) for axis in axes[leading:])
-        values = np.empty((self.nodes.shape[-1], stop - start))
-        for line in range(start // slab, -(-stop // slab)):
-            low, high = max(start, line * slab), min(stop, (line + 1) * slab)
-            within = slice(low - line * slab, high - line * slab)
-            values[:, low - start : high - start] = self._slab(axes, leading, line, within)
-        return values
+        weights = [axis.weights(values) for axis, values in zip(self.box.axes, axes, strict=True)]
+        return _block(self._nodes_last, weights, start, stop)
 
-    def _slab(self, axes: Sequence[FloatArray], leading: int, line: int, within: slice) -> FloatArray:
-        """Values (e, m) at some of the poses of which the leading coordinates are those of a line."""
-        nodes, weights = self.nodes, [axis.weights for axis in self.box.axes]
-        if leading:
-            places = np.unravel_index(line, [len(axis) for axis in axes[:leading]])
-            for of, axis, place in zip(weights, axes, places, strict=False):
-                nodes = np.tensordot(of(axis[place : place + 1])[0], nodes, 1)
-        if len(axes) == leading + 1:
-            return np.asarray(nodes.T @ weights[-1](axes[-1][within]).T)
-        rest = [of(axis) for of, axis in zip(weights[leading:], axes[leading:], strict=True)]
-        return np.asarray(on_grid(np.moveaxis(nodes, -1, 0), rest).reshape(nodes.shape[-1], -1)[:, within])
+    @cached_property
+    def _nodes_last(self) -> FloatArray:
+        return np.ascontiguousarray(np.moveaxis(self.nodes, -1, 0))
 
     @cached_property
     def _terms(self) -> Terms:
         return self.box.terms(self.nodes, self.error * NEGLIGIBLE)
 
 
-def _leading(lengths: Sequence[int], wanted: int) -> int:
-    """How many of the first coordinates are gone through one by one, so that no more poses than wanted come at once."""
-    return next((k for k in range(len(lengths)) if math.prod(lengths[k:]) <= wanted), len(lengths) - 1)
+def _block(nodes: FloatArray, weights: Sequence[FloatArray], start: int, stop: int) -> FloatArray:
+    """Values (e, m) at the combinations start .. stop - 1, in C order, from nodes (e, n_1, .., n_k).
+
+    Whole lines of the first coordinate come at once; of a line that is cut only what is wanted.
+    """
+    if len(weights) == 1:
+        return np.asarray(nodes @ weights[0][start:stop].T)
+    line = math.prod(map(len, weights[1:]))
+    first, last = -(-start // line), stop // line
+    if first > last:
+        return _on_line(nodes, weights, first - 1, start, stop, line)
+    pieces = [_on_line(nodes, weights, first - 1, start, first * line, line)] if start < first * line else []
+    if first < last:
+        pieces.append(on_grid(nodes, [weights[0][first:last], *weights[1:]]).reshape(len(nodes), -1))
+    if last * line < stop:
+        pieces.append(_on_line(nodes, weights, last, last * line, stop, line))
+    return np.concatenate(pieces, axis=1)
+
+
+def _on_line(
+    nodes: FloatArray, weights: Sequence[FloatArray], number: int, start: int, stop: int, line: int
+) -> FloatArray:
+    """Part of what belongs to one value of the first coordinate."""
+    rest = np.tensordot(nodes, weights[0][number], (1, 0))
+    return _block(rest, weights[1:], start - number * line, stop - number * line)

@@ -52,4 +52,4 @@ def test_page_that_is_a_folder(capsys: pytest.CaptureFixture[str], tmp_path: Pat
     (tmp_path / "report.html").mkdir()
     status, _, err = run(capsys, "report", "hexapod", "-o", str(tmp_path))
     assert status == 1
-    assert "report.html: cannot be written" in err
+    assert "report.html: found a folder, where the report has a file" in err
