@@ -17,7 +17,7 @@ from .poses import Poses
 from .quantities import Block, labels, variables
 from .reasons import sentences
 from .request import Request
-from .tracking import follow
+from .tracking import Identities, follow, followed_nowhere
 
 if TYPE_CHECKING:
     import xarray
@@ -26,8 +26,9 @@ if TYPE_CHECKING:
 
 PROOFS: Mapping[int, str] = {
     0: "none, the pose is unreachable",
-    1: "interpolated, and certified to the tolerance",
+    1: "interpolated, its error estimated to be within the bound",
     2: "all modes of the whole system",
+    3: "interpolated, its error estimated to be within the bound, and no mode missed by counts on the whole system",
 }
 """Codes of `proof` in words."""
 
@@ -105,14 +106,11 @@ def _flags(words: Mapping[int, str], dtype: str) -> dict[str, Any]:
 def _identities(machine: Machine, poses: Poses, request: Request, block: Block) -> dict[str, xarray.DataArray]:
     import xarray
 
-    reference = np.array([machine.reference_pose[name] for name in poses.names])
-    frequencies, vectors = np.asarray(block["frame_frequency"]), np.asarray(block["vectors"])  # may be read lazily
-    found = follow(poses, reference, frequencies, vectors, request.n_modes)
-    start = dict(zip(poses.names, poses.block(found.start, found.start + 1)[0].tolist(), strict=True))
-    place = pose_text(start, machine.kinematics.task.coordinates)
+    found = _followed(machine, poses, request, block)
+    where, characters = _beginning(machine, poses, request, found)
     coordinates = _pose_coordinates(machine, poses)
     numbers = np.arange(1, request.n_modes + 1)
-    tracked = {"tracked": numbers, "character": ("tracked", _characters(machine, start, request.n_modes))}
+    tracked = {"tracked": numbers, "character": ("tracked", characters)}
     dims, shape = _pose_dims(poses)
 
     def array(values: NDArray[Any], last: str, about: dict[str, Any], **attributes: str) -> xarray.DataArray:
@@ -120,7 +118,6 @@ def _identities(machine: Machine, poses: Poses, request: Request, block: Block) 
             values.reshape((*shape, request.n_modes)), {**coordinates, **about}, (*dims, last), attrs=attributes
         )
 
-    where = f"modes are numbered as at {place}; 0 where none could be followed"
     return {
         "identity": array(
             found.identity, "mode", {"mode": numbers}, long_name="whose frequency it is", units="1", comment=where
@@ -134,8 +131,22 @@ def _identities(machine: Machine, poses: Poses, request: Request, block: Block) 
     }
 
 
-def _characters(machine: Machine, start: Mapping[str, float], count: int) -> list[str]:
-    return [str(each) for each in machine.modes(count, **start).characters()]
+def _followed(machine: Machine, poses: Poses, request: Request, block: Block) -> Identities:
+    if "vectors" not in block:  # no pose is reachable
+        return followed_nowhere(poses.size, request.n_modes)
+    reference = np.array([machine.reference_pose[name] for name in poses.names])
+    frequencies, vectors = np.asarray(block["frame_frequency"]), np.asarray(block["vectors"])  # may be read lazily
+    return follow(poses, reference, frequencies, vectors, request.n_modes)
+
+
+def _beginning(machine: Machine, poses: Poses, request: Request, found: Identities) -> tuple[str, list[str]]:
+    """Where the modes have their numbers from, and what each of them is there, in words."""
+    if found.start is None:
+        return "no pose is reachable; 0 where none could be followed", ["unknown"] * request.n_modes
+    start = dict(zip(poses.names, poses.block(found.start, found.start + 1)[0].tolist(), strict=True))
+    place = pose_text(start, machine.kinematics.task.coordinates)
+    characters = [str(each) for each in machine.modes(request.n_modes, **start).characters()]
+    return f"modes are numbered as at {place}; 0 where none could be followed", characters
 
 
 def _attributes(machine: Machine, request: Request, certificate: Facts) -> dict[str, str | int | float]:

@@ -118,11 +118,11 @@ def certificate(plan: Plan, block: Mapping[str, Any]) -> dict[str, str | int | f
     proof = block["proof"]
     facts: dict[str, str | int | float] = {
         "how": plan.why,
-        "poses_interpolated": int(np.sum(proof == 1)),
+        "poses_interpolated": int(np.sum(np.isin(proof, (1, 3)))),
         "poses_solved": int(np.sum(proof == 2)),
         "poses_unreachable": int(np.sum(proof == 0)),
     }
-    if plan.interpolation is not None:
+    if plan.interpolation is not None and np.any(proof):
         facts["relative_error_bound"] = float(np.nanmax(block["bound"]))
     return facts
 

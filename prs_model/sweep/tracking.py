@@ -2,7 +2,8 @@
 
 Modes of neighbouring poses are compared by the squared cosine of their vectors (eq. 23), in a frame that turns
 smoothly with the pose. Identities start where the sweep is nearest the reference pose and spread along a tree over all
-poses: the spanning tree whose steps have the best overlaps, along the rows of a grid where they are equally good.
+poses: the spanning tree whose steps have the best overlaps, along the rows of a grid where they are equally good. On a
+grid steps lead to neighbours only, and islands are not reached; in a list they lead to the nearest poses, however far.
 
 A pose where two frequencies are one has arbitrary vectors: the tree passes it by and reaches it last.
 Round a point where two frequencies meet (a conical intersection) no labelling is both smooth and single-valued on a
@@ -18,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 from scipy.sparse import coo_array, csr_array
-from scipy.sparse.csgraph import breadth_first_order, minimum_spanning_tree
+from scipy.sparse.csgraph import breadth_first_order, connected_components, minimum_spanning_tree
 from scipy.spatial import cKDTree
 
 from ..arrays import BoolArray, FloatArray, IntArray
@@ -33,13 +34,13 @@ _CHUNK = 20_000  # steps compared at once, to bound memory
 
 @dataclass(frozen=True, eq=False)
 class Identities:
-    """Modes followed over N poses, numbered from 1 in the order of frequencies at pose number `start`.
+    """Modes followed over N poses, numbered from 1 in the order of frequencies at pose number `start`, if there is one.
 
     identity (N, k): whose the i-th frequency is, 0 where nothing led to the pose. frequency (N, k) [Hz] of each
     identity, NaN there. overlap (N, k): the least squared cosine of a step on the way, of each identity.
     """
 
-    start: int
+    start: int | None
     identity: NDArray[np.int16]
     frequency: FloatArray
     overlap: FloatArray
@@ -48,9 +49,18 @@ class Identities:
 def follow(poses: Poses, reference: FloatArray, frequencies: FloatArray, vectors: FloatArray, count: int) -> Identities:
     """The identities of `count` modes, from all frequencies (N, p) [Hz] and vectors (N, q, p) of a frame.
 
-    reference: the pose (d,) that the start is nearest to. NaN marks poses that are unreachable.
+    reference: the pose (d,) that the start is nearest to. NaN marks poses that are unreachable. Poses that are listed
+    several times have the identities of the first of them.
     """
     there = np.asarray(np.isfinite(frequencies).all(axis=1))
+    if not there.any():
+        return followed_nowhere(poses.size, count)
+    if poses.points is not None:
+        points, first, copies = np.unique(poses.points, axis=0, return_index=True, return_inverse=True)
+        if len(points) < poses.size:
+            distinct = Poses(poses.names, (), points)
+            found = follow(distinct, reference, frequencies[first], vectors[first], count)
+            return _spread(found, first, copies.reshape(-1))
     start = _start(poses, reference, there)
     if poses.is_grid:
         edges, preference = _grid_edges(poses, start, _has_repeated(frequencies))
@@ -70,6 +80,18 @@ def follow(poses: Poses, reference: FloatArray, frequencies: FloatArray, vectors
         np.where(reached[:, None], followed, np.nan),
         np.where(reached[:, None], least[:, :count], np.nan),
     )
+
+
+def followed_nowhere(size: int, count: int) -> Identities:
+    """No identity at any of `size` poses, where none is reachable."""
+    nothing = np.full((size, count), np.nan)
+    return Identities(None, np.zeros((size, count), dtype=np.int16), nothing, nothing.copy())
+
+
+def _spread(found: Identities, first: IntArray, copies: IntArray) -> Identities:
+    """The identities of all poses from those of distinct ones: which stand `first` there, and what each is one of."""
+    start = None if found.start is None else int(first[found.start])
+    return Identities(start, found.identity[copies], found.frequency[copies], found.overlap[copies])
 
 
 def _start(poses: Poses, reference: FloatArray, there: BoolArray) -> int:
@@ -105,7 +127,10 @@ def _along_cost(poses: Poses, start: int, axis: int, pairs: IntArray) -> FloatAr
 
 
 def _list_edges(poses: Poses, there: BoolArray) -> tuple[IntArray, FloatArray]:
-    """Each reachable pose of a list with those nearest to it (e, 2), coordinates by their range, and distances < 1."""
+    """Each reachable pose of a list with those nearest to it (e, 2), coordinates by their range, and distances < 1.
+
+    Groups that are apart are joined by the pair of poses that are nearest, until all poses hang together.
+    """
     numbers = np.flatnonzero(there)
     points = poses.block(0, poses.size)[numbers]
     points = points / np.maximum(np.ptp(points, axis=0), np.finfo(float).eps)
@@ -114,8 +139,33 @@ def _list_edges(poses: Poses, there: BoolArray) -> tuple[IntArray, FloatArray]:
     pairs = np.column_stack([np.repeat(np.arange(len(numbers)), count), nearest.ravel()])
     pairs, first = np.unique(np.sort(pairs, axis=1), axis=0, return_index=True)
     own = pairs[:, 0] != pairs[:, 1]
-    distance = np.asarray(distances).ravel()[first][own]
-    return numbers[pairs[own]], distance / (1.0 + distance)
+    pairs, distance = pairs[own], np.asarray(distances).ravel()[first][own]
+    while True:
+        links = coo_array((np.ones(len(pairs)), pairs.T), shape=(len(numbers), len(numbers)))
+        groups, group = connected_components(links, directed=False)
+        if groups == 1:
+            return numbers[pairs], distance / (1.0 + distance)
+        bridges, lengths = _bridges(points, np.asarray(group, dtype=np.intp))
+        pairs, distance = np.vstack([pairs, bridges]), np.concatenate([distance, lengths])
+
+
+def _bridges(points: FloatArray, group: IntArray) -> tuple[IntArray, FloatArray]:
+    """The pairs (b, 2) of points (N, d) that are nearest between each group (N,) and all others, and their distances.
+
+    Numbers of two groups differ in a digit at least: for each binary digit points of either kind look for the other.
+    """
+    nearest, distance = np.zeros(len(group), dtype=np.intp), np.full(len(group), np.inf)
+    for digit in range(int(group.max()).bit_length()):
+        is_one = (group >> digit) % 2 == 1
+        ones, zeros = np.flatnonzero(is_one), np.flatnonzero(~is_one)
+        for own, others in ((ones, zeros), (zeros, ones)):
+            away, place = map(np.asarray, cKDTree(points[others]).query(points[own]))
+            closer = away < distance[own]
+            distance[own[closer]], nearest[own[closer]] = away[closer], others[place[closer]]
+    order = np.lexsort((distance, group))
+    ends = order[np.unique(group[order], return_index=True)[1]]
+    pairs, first = np.unique(np.sort(np.column_stack([ends, nearest[ends]]), axis=1), axis=0, return_index=True)
+    return pairs, distance[ends][first]
 
 
 def _steps(edges: IntArray, frequencies: FloatArray, vectors: FloatArray) -> tuple[NDArray[np.int16], FloatArray]:

@@ -173,3 +173,18 @@ def test_progress_is_told_and_ends_at_the_total(hexapod: prs.Machine) -> None:
 def test_more_modes_than_there_are_are_told(hexapod: prs.Machine, count: int) -> None:
     with pytest.raises(PrsError, match=r"n_modes: found 9, expected at most 6"):
         hexapod.sweep(x=np.linspace(-0.003, 0.003, count), n_modes=9)
+
+
+@pytest.mark.parametrize("count", [3, 450])
+def test_a_map_without_a_reachable_pose_says_so(hexapod: prs.Machine, count: int) -> None:
+    z = np.linspace(3.0, 4.0, count)
+    points = np.tile(list(hexapod.reference_pose.values()), (count, 1))
+    points[:, 2] = z
+    for data in (hexapod.sweep(z=z, quantities="identity"), hexapod.sweep(poses=points, quantities="identity")):
+        assert (data["reason"] > 0).all()
+        assert np.isnan(data["tracked_frequency"]).all()
+        assert (data["identity"] == 0).all()
+        assert data["character"].values.tolist() == ["unknown"] * 6
+        assert "no pose is reachable" in data["identity"].attrs["comment"]
+        assert data.attrs["certificate_poses_unreachable"] == count
+        assert "certificate_relative_error_bound" not in data.attrs

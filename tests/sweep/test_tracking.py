@@ -92,3 +92,35 @@ def test_round_a_conical_intersection_the_overlap_warns():
     surfaces = found.frequency.reshape(16, 16, 2)
     assert np.abs(np.diff(surfaces, axis=0)).max() < 0.5
     assert found.overlap.min() < 0.95
+
+
+def test_no_reachable_pose_leaves_nothing_to_follow():
+    poses, levels, matrices = _grid()
+    listed = Poses(poses.names, (), poses.block(0, poses.size))
+    for each in (poses, listed):
+        found = follow(each, np.zeros(2), np.full_like(levels, np.nan), np.full_like(matrices, np.nan), 2)
+        assert found.start is None
+        assert (found.identity == 0).all()
+        assert np.isnan(found.frequency).all()
+
+
+def test_poses_listed_many_times_are_followed_like_those_listed_once():
+    poses, levels, matrices = _grid(31, 1)
+    copies = np.repeat(np.arange(31), 12)
+    listed = Poses(poses.names, (), poses.block(0, poses.size)[copies])
+    frequencies, vectors = _solved(matrices)
+    once = follow(Poses(poses.names, (), poses.block(0, 31)), np.zeros(2), frequencies, vectors, 3)
+    found = follow(listed, np.zeros(2), frequencies[copies], vectors[copies], 3)
+    assert found.identity.min() == 1
+    np.testing.assert_array_equal(found.identity, once.identity[copies])
+    np.testing.assert_allclose(found.frequency, levels[copies][:, np.argsort(levels[0])])
+
+
+def test_groups_of_listed_poses_are_joined_at_their_nearest():
+    """Clouds of poses further from each other than from their own, along a curve on which modes cross."""
+    scatter = np.random.default_rng(3).normal(scale=1e-4, size=(9, 15, 2))
+    points = (np.column_stack([np.linspace(0.0, 3.0, 9), np.zeros(9)])[:, None] + scatter).reshape(-1, 2)
+    levels, matrices = _crossing(*points.T)
+    found = follow(Poses(("x", "y"), (), points), np.zeros(2), *_solved(matrices), 3)
+    assert found.overlap.min() > 0.999
+    np.testing.assert_allclose(found.frequency, levels[:, np.argsort(levels[found.start])])
