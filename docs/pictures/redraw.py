@@ -1,12 +1,14 @@
-"""Redraws the pictures of head_3prs in this folder from reports on it: python docs/pictures/redraw.py"""
+"""Redraws the pictures of head_3prs in this folder from reports on it and a map: python docs/pictures/redraw.py"""
 
 from pathlib import Path
 from shutil import copyfile
 from tempfile import TemporaryDirectory
 
+import numpy as np
 from PIL import Image
 
 import prs_model as prs
+from prs_model.sweep.files import save
 
 HERE = Path(__file__).parent
 SETTINGS = {"head_3prs": "joint-loaded", "head_3prs_paper": "craig-bampton"}
@@ -30,6 +32,16 @@ def redraw(prefix: str, method: str) -> None:
         lighten(drawn / "mode_shapes.png", HERE / f"{prefix}_mode_shapes.png")
 
 
+def redraw_map() -> None:
+    """Figure 14 of the paper: six frequencies over nutation and precession."""
+    nutation, precession = np.radians(np.linspace(0.0, 30.0, 100)), np.radians(np.linspace(0.0, 360.0, 361))
+    data = prs.load_machine("head_3prs").sweep(nutation=nutation, precession=precession, z=1.275)
+    with TemporaryDirectory() as folder:
+        drawn = Path(folder, "map.png")
+        save(data, drawn)
+        Image.open(drawn).convert("RGB").quantize(64).save(HERE / "head_3prs_map.png", optimize=True)
+
+
 def lighten(source: Path, target: Path) -> None:
     """The same picture with fewer shades of each colour."""
     shades = [round(round(value / STEP) * STEP) for value in range(256)]
@@ -39,3 +51,4 @@ def lighten(source: Path, target: Path) -> None:
 if __name__ == "__main__":
     for prefix, method in SETTINGS.items():
         redraw(prefix, method)
+    redraw_map()
