@@ -7,13 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, IntArray
 from ..description.units import Dimension
 from ..errors import UnreachablePoseError
 from ..readable import pose_text, readable, readable_range
 from .tree import Tree
 
 _LIMIT_SLACK = 1e-9  # m, rad: rounding of a pose that stands exactly at a limit
+_TIE = 1e-6  # of a joint's range: joints that are as far beyond their limits, as those of like limbs
 
 
 @dataclass(frozen=True)
@@ -35,6 +36,18 @@ class Reach:
         """How far joints (..., n) are beyond their limits [m, rad]; zero within."""
         beyond = np.maximum(self.tree.lower - q, q - self.tree.upper)
         return np.where(beyond > _LIMIT_SLACK, beyond, 0.0)
+
+    def worst(self, q: FloatArray) -> IntArray:
+        """The joint (...) furthest beyond its limits for its range, of q (..., n) [m, rad]; -1 where none is.
+
+        Of joints that are equally far it is the first, not the one that rounding puts ahead.
+        """
+        excess = self.excess(q)
+        share = excess / np.maximum(self.tree.upper - self.tree.lower, _LIMIT_SLACK)
+        is_worst = (excess > 0.0) & (share >= share.max(axis=-1, keepdims=True, initial=0.0) - _TIE)
+        numbers = np.where(is_worst, np.arange(q.shape[-1]), q.shape[-1])
+        first = numbers.min(axis=-1, initial=q.shape[-1])
+        return np.asarray(np.where(first < q.shape[-1], first, -1))
 
     def no_closed_form(self, pose: FloatArray, q: FloatArray) -> UnreachablePoseError:
         """The error for a pose (d,) at which the closed form finds no value for the joints that are NaN in q (n,)."""
@@ -80,11 +93,8 @@ class Reach:
         return UnreachablePoseError(message, pose=self._pose(pose), joint=joint, value=float(q[j]), limits=limits)
 
     def _worst(self, q: FloatArray) -> int | None:
-        """The joint that is furthest beyond its limits for its range."""
-        excess = self.excess(q)
-        if not excess.any():
-            return None
-        return int(np.argmax(excess / np.maximum(self.tree.upper - self.tree.lower, _LIMIT_SLACK)))
+        worst = int(self.worst(q))
+        return worst if worst >= 0 else None
 
     def _joint(self, j: int) -> str:
         name = self.tree.names[j]

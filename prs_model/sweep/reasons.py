@@ -18,12 +18,9 @@ REACHABLE, NO_CONFIGURATION, _FIRST_LIMIT = 0, 1, 2
 def reason_codes(reach: Reach, q: FloatArray) -> NDArray[np.int16]:
     """The code (N,) of each configuration (N, n) [m, rad]: 0 reachable, 1 none (NaN), else the joint that is furthest
     beyond its limits for its range: 2 + 2 j below the lower one of joint j, 3 + 2 j above the upper one."""
-    excess = reach.excess(q)
-    spans = np.maximum(reach.tree.upper - reach.tree.lower, np.finfo(float).tiny)
-    worst = np.argmax(excess / spans, axis=1)
-    rows = np.arange(len(q))
-    above = q[rows, worst] > reach.tree.upper[worst]
-    codes = np.where(excess[rows, worst] > 0.0, _FIRST_LIMIT + 2 * worst + above, REACHABLE)
+    worst = reach.worst(q)
+    above = (q > reach.tree.upper)[np.arange(len(q)), worst] if q.shape[1] else np.zeros(len(q), dtype=bool)
+    codes = np.where(worst >= 0, _FIRST_LIMIT + 2 * worst + above, REACHABLE)
     return np.where(np.isnan(q).any(axis=1), NO_CONFIGURATION, codes).astype(np.int16)
 
 
