@@ -2,28 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, IntArray
 from .exact import CHUNK, Solved, Solver, part
 from .frames import Frame, in_frame
-from .in_frame import carried, quantities_in_frame
+from .in_frame import carried, is_possible, quantities_in_frame
 from .quantities import Block, Labels, blank
 from .reasons import reason_codes
 from .request import Request
-from .truth import check_count
+from .rounding import rounding
+from .truth import DENSE, FOLLOWED, at_pose, check_count, with_mass
 
 if TYPE_CHECKING:
     from ..kinematics import Configurations
     from ..machine import Machine
-    from ..synthesis.batch import Systems
-
-DENSE = 2  # code of `proof`
-ROUNDING = 1e-12  # relative, of eigenvalues by LAPACK
-_FOLLOWED = 4  # modes above those asked for, between which identities are followed
 
 
 def solved_directly(
@@ -37,16 +34,27 @@ def solved_directly(
     found = machine.kinematics.solve_batch(poses)
     block = blank(request, labelled, len(poses))
     block["reason"] = reason_codes(machine.kinematics.reach, found.q)
-    solver = Solver(machine, _count(machine, request, frame), shift)
     there = np.flatnonzero(block["reason"] == 0)
-    for start in range(0, len(there), CHUNK):
-        some = there[start : start + CHUNK]
-        for name, values in _chunk(solver, request, part(found, some), frame).items():
+    if is_possible(request, machine.description.file.damping):
+        solver = Solver(machine, _count(machine, request, frame), shift)
+        pieces = _in_chunks(solver, request, found, there, frame)
+    else:
+        pieces = ((there[i : i + 1], at_pose(machine, found[int(k)], request)) for i, k in enumerate(there))
+    for some, piece in pieces:
+        for name, values in piece.items():
             if name not in block:
                 block[name] = np.full((len(poses), *values.shape[1:]), np.nan)
             block[name][some] = values
-    block["proof"][there], block["bound"][there] = DENSE, ROUNDING
+    block["proof"][there] = DENSE
     return block
+
+
+def _in_chunks(
+    solver: Solver, request: Request, found: Configurations, there: IntArray, frame: Frame | None
+) -> Iterator[tuple[IntArray, Block]]:
+    for start in range(0, len(there), CHUNK):
+        some = there[start : start + CHUNK]
+        yield some, _chunk(solver, request, part(found, some), frame)
 
 
 def _count(machine: Machine, request: Request, frame: Frame | None) -> int:
@@ -54,9 +62,7 @@ def _count(machine: Machine, request: Request, frame: Frame | None) -> int:
     if frame is not None:
         return frame.size
     size = sum(each.size for each in machine.parts.values())
-    return (
-        size if "frf_peak" in request.quantities else request.n_modes + _FOLLOWED * ("identity" in request.quantities)
-    )
+    return size if "frf_peak" in request.quantities else request.n_modes + FOLLOWED * ("identity" in request.quantities)
 
 
 def _chunk(solver: Solver, request: Request, configurations: Configurations, frame: Frame | None) -> Block:
@@ -66,8 +72,10 @@ def _chunk(solver: Solver, request: Request, configurations: Configurations, fra
     held = carried(solved.systems, shapes, request)
     own = np.broadcast_to(np.eye(values.shape[1]), (len(values), values.shape[1], values.shape[1]))
     block = quantities_in_frame(values, own, held, request, solver.machine.description.file.damping)
+    mass, stiffness = (np.diagonal(each, axis1=1, axis2=2) for each in (solved.systems.mass, solved.systems.stiffness))
+    block["bound"] = rounding(values, shapes, mass, stiffness, held["rate"])[:, : request.n_modes]
     if "vectors" in block:
-        block["vectors"] = _with_mass(solved.systems, shapes) if frame is None else _seen_in(frame, solved)
+        block["vectors"] = with_mass(solved.systems.mass, shapes) if frame is None else _seen_in(frame, solved)
     return block
 
 
@@ -75,10 +83,3 @@ def _seen_in(frame: Frame, solved: Solved) -> FloatArray:
     """W^T M U (m, p, p): the modes in the smooth frame."""
     frames = in_frame(replace(frame, level=None), solved.systems, solved.modes).frames
     return np.asarray(frames.swapaxes(1, 2) @ (solved.systems.mass @ solved.modes.shapes))
-
-
-def _with_mass(systems: Systems, shapes: FloatArray) -> FloatArray:
-    """M^(1/2) times the shapes (m, n, k): orthonormal, and alike at poses near each other."""
-    values, vectors = np.linalg.eigh(systems.mass)
-    root = (vectors * np.sqrt(np.maximum(values, 0.0))[:, None]) @ vectors.swapaxes(1, 2)
-    return np.asarray(root @ shapes)

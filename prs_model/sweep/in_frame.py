@@ -21,12 +21,12 @@ from .low_modes import pencils
 from .peaks import largest, places
 from .quantities import Block
 from .request import Request
+from .rounding import is_rigid
 
 if TYPE_CHECKING:
     from ..description.schema import Damping
     from ..synthesis.batch import Systems
 
-_RIGID = 1e-8  # of the slowest rate of a held coordinate, as in Modes.is_rigid
 _CHUNK = 256  # poses whose responses are searched at once, to bound memory
 
 
@@ -72,8 +72,8 @@ def quantities_in_frame(
     `is_possible` says no.
     """
     k, wanted = request.n_modes, request.quantities
-    is_rigid = eigenvalues <= _RIGID * held["rate"][:, None]
-    frequencies = np.sqrt(np.where(is_rigid, 0.0, eigenvalues)) / (2.0 * np.pi)
+    rigid = is_rigid(eigenvalues, held["rate"])
+    frequencies = np.sqrt(np.where(rigid, 0.0, eigenvalues)) / (2.0 * np.pi)
     block: Block = {"frequency": frequencies[:, :k]}
     if "static_compliance" in wanted:
         block["static_compliance"] = held["compliance"]
@@ -83,7 +83,7 @@ def quantities_in_frame(
         block["kinetic_energy"] = _shares(held["kinetic"], vectors[:, :, :k])
     if "strain_energy" in wanted:
         shares = _shares(held["strain"], vectors[:, :, :k])
-        block["strain_energy"] = np.where(is_rigid[:, :k, None], 0.0, shares)
+        block["strain_energy"] = np.where(rigid[:, :k, None], 0.0, shares)
     if "frf_peak" in wanted:
         block["frf_peak"], block["frf_peak_frequency"] = _peaks(eigenvalues, vectors, held, request, damping)
     if "identity" in wanted:

@@ -8,11 +8,12 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..errors import PrsError
-from ..linear_algebra import positive_definite_pencil
+from ..linear_algebra import positive_definite_pencil, slowest_rate
 from ..response.modal_equations import modal_equations
 from .peaks import largest, places
 from .quantities import Block, Labels, blank, labels
 from .request import Request
+from .rounding import rounding
 
 if TYPE_CHECKING:
     from ..kinematics import Configuration
@@ -22,8 +23,8 @@ if TYPE_CHECKING:
 DENSE = 2
 """Code of `proof`: all modes of the whole system, LAPACK."""
 
-_EXTRA = 4  # modes above those asked for, between which identities are followed
-_ROUNDING = 1e-12
+FOLLOWED = 4
+"""Modes above those asked for, between which identities are followed."""
 
 
 def at_pose(machine: Machine, configuration: Configuration, request: Request) -> Block:
@@ -34,18 +35,18 @@ def at_pose(machine: Machine, configuration: Configuration, request: Request) ->
     """
     system = machine.assemble(configuration)
     with_peaks = "frf_peak" in request.quantities
-    modes = system.modes(system.size if with_peaks else request.n_modes + _EXTRA)
+    modes = system.modes(system.size if with_peaks else request.n_modes + FOLLOWED)
     check_count(request, len(modes.frequencies))
     labelled = labels(machine, request)
     block = blank(request, labelled, 1)
     block["frequency"][0] = modes.frequencies[: request.n_modes]
-    block["bound"][0] = _ROUNDING
+    block["bound"][0] = _bound(modes)[: request.n_modes]
     block["proof"][0] = DENSE
     _add_energies(block, modes, request, labelled)
     if positive_definite_pencil(system.mass, system.stiffness)[0] == 0.0:
         _add_compliances(block, modes, request)
     if "identity" in request.quantities:
-        some = slice(request.n_modes + _EXTRA)
+        some = slice(request.n_modes + FOLLOWED)
         block["vectors"] = _with_mass(modes)[None, :, some]
         block["frame_frequency"] = modes.frequencies[None, some]
     return block
@@ -104,11 +105,20 @@ def _peaks(modes: Modes, request: Request) -> tuple[FloatArray, FloatArray]:
     return peaks[0], at[0] / (2.0 * np.pi)
 
 
+def with_mass(mass: FloatArray, shapes: FloatArray) -> FloatArray:
+    """M^(1/2) (.., n, n) times the shapes (.., n, k): orthonormal, and alike at poses near each other."""
+    values, vectors = np.linalg.eigh(mass)
+    root = (vectors * np.sqrt(np.maximum(values, 0.0))[..., None, :]) @ vectors.swapaxes(-1, -2)
+    return np.asarray(root @ shapes)
+
+
 def _with_mass(modes: Modes) -> FloatArray:
-    """M^(1/2) times the shapes on all body coordinates (N, k): orthonormal, and alike at poses near each other."""
-    parts = []
-    for name, element in modes.system.elements.items():
-        values, vectors = np.linalg.eigh(element.mass)
-        root = (vectors * np.sqrt(np.maximum(values, 0.0))) @ vectors.T
-        parts.append(root @ modes.body_shapes(name))
-    return np.vstack(parts)
+    """The same on all body coordinates (N, k), body by body."""
+    elements = modes.system.elements
+    return np.vstack([with_mass(each.mass, modes.body_shapes(name)) for name, each in elements.items()])
+
+
+def _bound(modes: Modes) -> FloatArray:
+    mass, stiffness = modes.system.mass, modes.system.stiffness
+    rate = np.array(slowest_rate(mass, stiffness))
+    return rounding(modes.eigenvalues, modes.shapes, np.diag(mass), np.diag(stiffness), rate)

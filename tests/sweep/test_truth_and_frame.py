@@ -7,11 +7,14 @@ import pytest
 
 from prs_model import load_machine
 from prs_model.errors import PrsError
+from prs_model.linear_algebra import lowest_modes, slowest_rate
 from prs_model.sweep.in_frame import carried, is_possible, quantities_in_frame, reaches
 from prs_model.sweep.reasons import reason_codes, sentences
 from prs_model.sweep.request import QUANTITIES, Request
+from prs_model.sweep.rounding import rounding
 from prs_model.sweep.truth import at_pose, check_damping
 from prs_model.synthesis.batch import assemble_many
+from tests.sweep.stick import stick
 
 BAND = (400.0, 1200.0)
 POSES = np.array([[0.0, 0.0, 0.09, 0.0, 0.0, 0.0], [0.002, -0.001, 0.091, 0.04, 0.01, 0.03]])
@@ -99,3 +102,61 @@ def test_reasons_name_the_joint_and_the_side(hexapod):
     assert f"{tree.names[limited]} above its upper limit" in words[codes[1]]
     assert f"{tree.names[limited]} below its lower limit" in words[codes[2]]
     assert words[codes[3]] == "no configuration closes the loops"
+
+
+def test_peaks_under_damping_of_joints_are_those_of_every_pose_in_full():
+    """Joints that damp couple modes: there the sweep is the library's own response, pose by pose."""
+    damping = {"modal": [0.02], "joints": {"P": {"loss_factor": 0.2}}}
+    machine = load_machine("hexapod").replace({"damping": damping})
+    quantities = ("frf_peak", "static_compliance", "identity")
+    data = machine.sweep(x=[-0.001, 0.002, 0.5], n_modes=2, quantities=quantities, band=BAND)
+    assert data["proof"].values.tolist() == [2, 2, 0]
+    assert np.isnan(data["frf_peak"][2]).all()
+    assert data["identity"].values.tolist()[2] == [0, 0]
+    fine = np.linspace(*BAND, 8001)
+    modes = machine.modes(6, x=0.002)
+    curves = np.abs(modes.frf(fine))[:, range(3), range(3)]
+    np.testing.assert_allclose(data["frf_peak"][1], curves.max(axis=0), rtol=1e-4)
+    np.testing.assert_allclose(data["static_compliance"][1], modes.static_compliance(), rtol=1e-9, atol=1e-15)
+    alone = np.abs(modes.frf(fine, 0.02))[:, range(3), range(3)].max(axis=0)
+    assert (alone > 1.1 * curves.max(axis=0)).all()
+
+
+@pytest.mark.parametrize("stiff", [1e2, 1e4, 1e7])
+def test_the_estimate_of_rounding_grows_with_what_is_lost(stiff):
+    """Two masses on a soft spring, a stiff one between them: in closed form, in more digits than the solver has."""
+    mass, stiffness = np.diag([1.0, 2.0]), np.array([[1.0 + stiff, -stiff], [-stiff, stiff]])
+    k, whole = np.longdouble(stiff), np.longdouble(stiffness[0, 0])
+    b, c = 2 * whole + k, 2 * k * (whole - k)  # 2 lambda^2 - b lambda + .. with determinant c / 2
+    root = (b + np.sqrt(b**2 - 4 * c)) / 4
+    exact = np.array([c / (4 * root), root])
+    values, shapes = lowest_modes(mass, stiffness, 2)
+    rate = np.array(slowest_rate(mass, stiffness))
+    bound = rounding(values, shapes, np.diag(mass), np.diag(stiffness), rate)
+    errors = np.abs(np.sqrt(values / exact.astype(float)) - 1.0)
+    assert (errors <= bound).all()
+    assert 1e-16 * stiff < bound[0] < 1e-14 * stiff
+
+
+def test_a_mode_that_is_free_has_no_relative_error(tmp_path):
+    free = stick(tmp_path, held=False)
+    block = at_pose(free, free.configuration(), Request(n_modes=8))
+    assert np.isnan(block["bound"][0, :6]).all()
+    assert (block["bound"][0, 6:] < 1e-9).all()
+    np.testing.assert_allclose(free.sweep(n_modes=8)["bound"][6:], block["bound"][0, 6:], rtol=100.0)
+
+
+def test_of_joints_as_far_beyond_their_limits_the_first_is_named(hexapod):
+    """Whatever rounding does to struts that are alike."""
+    reach = hexapod.kinematics.reach
+    struts = [j for j, name in enumerate(reach.tree.names) if name.startswith("strut")]
+    q = np.tile(hexapod.configuration().q, (20, 1))
+    q[:, struts] = (
+        reach.tree.upper[struts] + 0.01 + np.random.default_rng(5).normal(scale=1e-10, size=(20, len(struts)))
+    )
+    q[19, struts[2]] += 0.001
+    codes = reason_codes(reach, q)
+    assert set(codes[:19]) == {3 + 2 * struts[0]}
+    assert codes[19] == 3 + 2 * struts[2]
+    told = [reach.beyond_limits(np.zeros(6), each).joint for each in q]
+    assert told == [reach.tree.names[struts[0]]] * 19 + [reach.tree.names[struts[2]]]
