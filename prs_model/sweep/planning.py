@@ -215,6 +215,8 @@ class _Planner:
         numbers = sorted({*drawn.tolist(), *_corners(self.asked)})
         poses = np.concatenate([self.asked.block(i, i + 1) for i in numbers])
         poses = poses[self.machine.kinematics.solve_batch(poses).reachable]
+        if not len(poses):
+            raise NotSmoothError("none of the poses that were tried is within reach")
         exact = np.exp(_logarithms(self.solver, self.request, self.pool)(poses)) + self.solver.shift
         if self.symmetry is not None:
             poses[:, self.symmetry.column] = self.symmetry.folded(poses[:, self.symmetry.column])
