@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import fcntl
 import os
 import socket
 from collections.abc import Iterator
@@ -18,9 +17,14 @@ LOCK = "lock"
 def locked(folder: Path) -> Iterator[None]:
     """Hold a folder. The system lets go of it when the process ends, however it ends.
 
-    The file `lock` in it says who holds it, or held it last. Raises PrsError while another does, OSError for a folder
-    that cannot be written.
+    The file `lock` in it says who holds it, or held it last. Raises PrsError while another does, and where the
+    system has no such locks; OSError for a folder that cannot be written.
     """
+    try:
+        import fcntl  # noqa: F401  (POSIX only)
+    except ImportError as error:
+        why = "this system has no file locks (fcntl), by which one process at a time is let in"
+        raise PrsError(f"{short(folder)}: {why}; sweep without a folder (store), or on Linux or macOS") from error
     with (folder / LOCK).open("a+") as file:
         _take(file.fileno(), folder)
         file.truncate(0)
@@ -30,6 +34,8 @@ def locked(folder: Path) -> Iterator[None]:
 
 
 def _take(descriptor: int, folder: Path) -> None:
+    import fcntl
+
     try:
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError as error:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack
 from importlib.util import find_spec
 from itertools import islice
 from pathlib import Path
@@ -22,6 +21,7 @@ from .quantities import Block
 from .request import Request
 from .room import check_room
 from .store import Store, blank, opened, piece_length
+from .threads import workers
 from .truth import check_damping
 
 if TYPE_CHECKING:
@@ -32,7 +32,11 @@ if TYPE_CHECKING:
 Progress = Callable[[int, int], None]
 """Called with the number of poses that are done and of all, now and then."""
 
+Spans = Mapping[int, tuple[int, int]]
+"""Pieces by number: the poses start .. stop - 1."""
+
 _UNDER_WAY = 32  # pieces at a time, which bounds memory
+_SOLVED = 256  # poses in a piece at most, where they are solved one by one: an interruption waits for pieces begun
 
 
 def sweep(
@@ -52,7 +56,8 @@ def sweep(
         pool = held.enter_context(workers())
         kept = held.enter_context(opened(store, identity_text, poses.shape)) if store is not None else None
         plan = _plan(machine, poses, request, pool, kept)
-        block = _whole(plan, _pieces(plan, kept, pool, cluster), kept, progress)
+        spans = _spans(plan) if kept is None else kept.unfinished()
+        block = _whole(plan, spans, _pieces(plan, spans, kept, pool, cluster), kept, progress)
         return to_dataset(machine, poses, request, block, certificate(plan, block))
 
 
@@ -63,26 +68,36 @@ def _plan(machine: Machine, poses: Poses, request: Request, pool: ThreadPoolExec
     return Plan.from_arrays(machine, poses, request, arrays)
 
 
-def _pieces(plan: Plan, kept: Store | None, pool: ThreadPoolExecutor, cluster: object) -> Iterator[tuple[int, Block]]:
+def _spans(plan: Plan) -> Spans:
+    """All pieces of a sweep that is not kept."""
+    size, length = plan.poses.size, piece_length(plan.poses.shape)
+    if plan.interpolation is None:
+        length = min(length, _SOLVED)
+    return {k: (start, min(start + length, size)) for k, start in enumerate(range(0, size, length))}
+
+
+def _pieces(
+    plan: Plan, spans: Spans, kept: Store | None, pool: ThreadPoolExecutor, cluster: object
+) -> Iterator[tuple[int, Block]]:
     """What is not finished yet, by the first pose of each piece, as it becomes ready."""
-    length = piece_length(plan.poses.shape)
-    chunks = kept.unfinished() if kept is not None else _spans(plan.poses.size, length)
     if cluster is None:
-        evaluated = _evaluated(plan, chunks, pool)
+        evaluated = _evaluated(plan, spans, pool)
     else:
         from .cluster import evaluate
 
-        evaluated = evaluate(cluster, plan, chunks)
+        evaluated = evaluate(cluster, plan, spans)
     for index, block in evaluated:
         if kept is not None:
             kept.write(index, block)
-        yield chunks[index][0], block
+        yield spans[index][0], block
 
 
-def _whole(plan: Plan, pieces: Iterator[tuple[int, Block]], kept: Store | None, progress: Progress | None) -> Block:
+def _whole(
+    plan: Plan, spans: Spans, pieces: Iterator[tuple[int, Block]], kept: Store | None, progress: Progress | None
+) -> Block:
     """All results, from the pieces as they come or, where these are kept, from their files."""
     size, block = plan.poses.size, {}
-    done = size - sum(stop - start for start, stop in kept.unfinished().values()) if kept is not None else 0
+    done = size - sum(stop - start for start, stop in spans.values())
     for start, piece in pieces:
         done += len(piece["proof"])
         if kept is None:
@@ -93,24 +108,6 @@ def _whole(plan: Plan, pieces: Iterator[tuple[int, Block]], kept: Store | None, 
         if progress is not None:
             progress(done, size)
     return block if kept is None else results(kept)
-
-
-def _spans(size: int, length: int) -> dict[int, tuple[int, int]]:
-    return {k: (start, min(start + length, size)) for k, start in enumerate(range(0, size, length))}
-
-
-@contextmanager
-def workers(threads: int | None = None) -> Iterator[ThreadPoolExecutor]:
-    """Threads on all cores this process may use, each with linear algebra of one thread."""
-    from threadpoolctl import threadpool_limits
-
-    available = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
-    with threadpool_limits(1, user_api="blas"), ThreadPoolExecutor(threads or available) as pool:
-        try:
-            yield pool
-        except BaseException:  # an interruption among them: what has not begun is dropped
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
 
 
 def certificate(plan: Plan, block: Mapping[str, Any]) -> dict[str, str | int | float]:
@@ -127,11 +124,9 @@ def certificate(plan: Plan, block: Mapping[str, Any]) -> dict[str, str | int | f
     return facts
 
 
-def _evaluated(
-    plan: Plan, chunks: Mapping[int, tuple[int, int]], pool: ThreadPoolExecutor
-) -> Iterator[tuple[int, Block]]:
+def _evaluated(plan: Plan, spans: Spans, pool: ThreadPoolExecutor) -> Iterator[tuple[int, Block]]:
     """Pieces by number, as they become ready; a few under way at a time."""
-    waiting = iter(chunks.items())
+    waiting = iter(spans.items())
     under_way: dict[Future[Block], int] = {}
     while True:
         for index, (start, stop) in islice(waiting, _UNDER_WAY - len(under_way)):

@@ -193,8 +193,11 @@ def opened(folder: str | Path, run: str, shape: tuple[int, ...]) -> Iterator[Sto
     """The folder of a run, made where there is none, and held as long as it is open: one process at a time.
 
     run: the identity of the sweep, canonical JSON; shape: of its poses.
-    Raises PrsError for a folder of another run, one with other files in it, one in use, or one that cannot be written.
+    Raises PrsError for a folder of another run, one with other files in it, one in use, one that cannot be written, or
+    one without a name.
     """
+    if not str(folder).strip():
+        raise PrsError(f"store: found '{folder}', expected the name of a folder")
     folder = Path(folder)
     with ExitStack() as held:
         with told(folder):

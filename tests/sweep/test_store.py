@@ -5,6 +5,7 @@ import logging
 import os
 import random
 import signal
+import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -210,6 +211,33 @@ def test_a_place_that_cannot_be_written_is_told(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     with pytest.raises(PrsError, match="cannot be written"):
         opened(tmp_path / "file", RUN, SHAPE).__enter__()
+
+
+def test_a_folder_without_a_name_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(PrsError, match="store: found '', expected the name of a folder"):
+        prs.load_machine("hexapod").sweep(x=0.0, store="")
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_system_without_locks_is_told(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "fcntl", None)
+    with pytest.raises(PrsError, match=r"run: this system has no file locks \(fcntl\).*sweep without a folder"):
+        opened(folder, RUN, SHAPE).__enter__()
+    assert not list(folder.iterdir())
+
+
+def test_a_finished_piece_is_tested_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    machine, z = prs.load_machine("hexapod"), np.linspace(0.089, 0.091, 5)
+    expected = machine.sweep(z=z, store=tmp_path)
+    tested: list[int] = []
+    is_sound = Store._is_sound
+    monkeypatch.setattr(Store, "_is_sound", lambda store, index: tested.append(index) or is_sound(store, index))
+    told: list[tuple[int, int]] = []
+    found = machine.sweep(z=z, store=tmp_path, progress=lambda *done: told.append(done))
+    xarray.testing.assert_identical(found, expected)
+    assert sorted(tested) == [0, 1, 2, 3, 4]
+    assert not told
 
 
 def test_one_process_at_a_time_and_a_killed_one_holds_nothing(folder: Path, tmp_path: Path) -> None:
