@@ -119,8 +119,9 @@ def certificate(plan: Plan, block: Mapping[str, Any]) -> dict[str, str | int | f
         "poses_solved": int(np.sum(proof == 2)),
         "poses_unreachable": int(np.sum(proof == 0)),
     }
-    if plan.interpolation is not None and np.any(proof):
-        facts["relative_error_bound"] = float(np.nanmax(block["bound"]))
+    bound = float(np.nan_to_num(block["bound"]).max()) if plan.interpolation is not None else 0.0
+    if bound > 0.0:  # it has none where no pose is reachable
+        facts["relative_error_bound"] = bound
     return facts
 
 

@@ -232,7 +232,12 @@ def test_a_finished_piece_is_tested_once(tmp_path: Path, monkeypatch: pytest.Mon
     expected = machine.sweep(z=z, store=tmp_path)
     tested: list[int] = []
     is_sound = Store._is_sound
-    monkeypatch.setattr(Store, "_is_sound", lambda store, index: tested.append(index) or is_sound(store, index))
+
+    def journal(store: Store, index: int) -> bool:
+        tested.append(index)
+        return is_sound(store, index)
+
+    monkeypatch.setattr(Store, "_is_sound", journal)
     told: list[tuple[int, int]] = []
     found = machine.sweep(z=z, store=tmp_path, progress=lambda *done: told.append(done))
     xarray.testing.assert_identical(found, expected)
