@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 CHUNK = 48  # configurations assembled at once: 40 MB at 200 coordinates
 
-_SMALLEST, _SHARES = 8, 4  # of a chunk, and chunks of a few poses, so that all cores have some
+_SMALLEST, _SHARES = 4, 4  # of a chunk, and chunks of a few poses, so that all cores have some
 
 _T = TypeVar("_T")
 

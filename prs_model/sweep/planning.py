@@ -93,7 +93,8 @@ class _Planner:
         solver = Solver(machine, _modes_needed(home, request), shift)
         found, distinct = None, poses
         if by_symmetry and request.quantities == ("frequency",):
-            found = symmetry_of(shape, _like_limbs(machine), request.tolerance, _logarithms(solver, request, pool))
+            few = replace(solver, count=request.n_modes)
+            found = symmetry_of(shape, _like_limbs(machine), request.tolerance, _logarithms(few, request, pool))
         if found is not None:
             distinct = folded(found, poses).distinct
             shape = shape_of(machine.kinematics, distinct)

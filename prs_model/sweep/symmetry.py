@@ -114,7 +114,7 @@ def symmetry_of(shape: Shape, likes: set[int], tolerance: float, logarithms: Log
     if defect > most:
         return None
     start = float(shape.bounds[shape.columns.index(column), 0])
-    for plane in start + period / _PLANES * np.arange(_PLANES) / 2.0:
+    for plane in period / _PLANES * np.arange(_PLANES) / 2.0:
         if differs(2.0 * plane - values, 1) < most and (both := defect + differs(2.0 * plane - values)) < most:
             return Symmetry(column, period, float(plane), start, both)
     return Symmetry(column, period, None, start, defect)
