@@ -11,7 +11,7 @@ demo: $(VENV)/.report
 	$(BIN)/prs-model report head_3prs -o out/head_3prs
 
 test: $(VENV)/.test
-	OMP_NUM_THREADS=1 $(BIN)/python -m pytest
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile
 
 # The pages of `report` and `explore` in headless Chromium.
 browser: $(VENV)/.test

@@ -64,8 +64,10 @@ def test_a_held_part_is_not_called_free():
 
 def test_a_part_that_has_no_frequency_is_shown_without(caplog):
     """A point mass meets nothing when it turns; a bar with one interface and no modes moves rigidly only."""
+    point = prs.reduce("rigid", mass=2.5, nodes={"a": (0.0, 0.0, 0.0)})
+    caplog.clear()
     with caplog.at_level(logging.INFO, logger="prs_model"):
-        echo(prs.reduce("rigid", mass=2.5, nodes={"a": (0.0, 0.0, 0.0)}), "point")
+        echo(point, "point")
     assert caplog.messages == ["point: 2.5 kg, nodes in 0 x 0 x 0 m"]
     bar = {"kind": "round", "diameter": 0.1, "material": STEEL}
     nodes = {"root": (0.0, 0.0, 0.0), "tip": (1.0, 0.0, 0.0)}
