@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,6 +10,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..errors import PrsError
 from . import damping_argument, frf_text, machine_argument, pose_argument
+from .output_argument import add_outputs
 from .values import positive
 
 if TYPE_CHECKING:
@@ -57,16 +57,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     way = parser.add_mutually_exclusive_group()
     way.add_argument("--direct", action="store_true", help="solve for each frequency instead of adding up modes")
     way.add_argument("-n", "--count", type=positive, help="how many modes, static correction added; default: all")
-    parser.add_argument(
-        "-o",
-        "--output",
-        nargs="+",
-        action="extend",
-        type=Path,
-        default=[],
-        metavar="FILE",
-        help="write .csv, .uff (universal file, dataset 58), or a picture .png, .svg, .pdf",
-    )
+    add_outputs(parser, "write .csv, .uff (universal file, dataset 58), or a picture .png, .svg, .pdf")
     machine_argument.add_settings(parser)
 
 

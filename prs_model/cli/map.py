@@ -13,6 +13,7 @@ from ..sweep.poses import Poses, poses_of
 from ..sweep.request import QUANTITIES, Request
 from . import machine_argument, pose_argument
 from .grids import grid_from
+from .output_argument import add_outputs
 from .pose_list import poses_from_file
 from .progress import bar
 from .table import table
@@ -57,16 +58,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="test at every pose, on the whole system, that no mode was missed; takes about a third of the time of "
         "solving it",
     )
-    parser.add_argument(
-        "-o",
-        "--output",
-        nargs="+",
-        action="extend",
-        type=Path,
-        default=[],
-        metavar="FILE",
-        help="write .nc, .zarr, .csv, or a picture .png, .svg, .pdf",
-    )
+    add_outputs(parser, "write .nc, .zarr, .csv, or a picture .png, .svg, .pdf")
     parser.add_argument("--draw", default="frequency", metavar="NAME", help="what a picture shows (default frequency)")
     parser.add_argument(
         "--store",

@@ -10,9 +10,27 @@ from errno import EISDIR
 from pathlib import Path
 from typing import Any
 
-from ..errors import PrsError, short
+from ..errors import MissingExtraError, PrsError, short
 
 _DATE = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}  # what would make two files of one picture differ
+
+
+@contextmanager
+def matplotlib_told(work: str, extra: str = "plot") -> Iterator[None]:
+    """Imports from matplotlib that fail become a MissingExtraError for this work, or a PrsError of a wrong setting."""
+    try:
+        yield
+    except ImportError as error:
+        raise MissingExtraError("matplotlib", extra, work) from error
+    except ValueError as error:  # a setting of its own that it does not take, such as MPLBACKEND
+        raise PrsError(f"matplotlib cannot be used: {error}") from error
+
+
+def matplotlib_figure(work: str, extra: str = "plot") -> Any:
+    """matplotlib's Figure. Raises as matplotlib_told."""
+    with matplotlib_told(work, extra):
+        from matplotlib.figure import Figure
+    return Figure
 
 
 def check_writable(path: Path) -> None:

@@ -13,8 +13,8 @@ import numpy as np
 import pinocchio as pin
 
 from ..arrays import FloatArray, IntArray
-from ..errors import MissingExtraError, PrsError
-from .figure_file import check_writable, write_figure
+from ..errors import PrsError
+from .figure_file import check_writable, matplotlib_told, write_figure
 
 if TYPE_CHECKING:
     from .modes import Modes
@@ -146,15 +146,11 @@ def _set_view(axes: Any, low: FloatArray, high: FloatArray) -> None:
 
 
 def _matplotlib() -> SimpleNamespace:
-    try:
+    with matplotlib_told("drawing mode shapes"):
         from matplotlib import colormaps
         from matplotlib.cm import ScalarMappable
         from matplotlib.figure import Figure
         from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
-    except ImportError as error:
-        raise MissingExtraError("matplotlib", "plot", "drawing mode shapes") from error
-    except ValueError as error:  # a setting of its own that it does not take, such as MPLBACKEND
-        raise PrsError(f"matplotlib cannot be used: {error}") from error
     return SimpleNamespace(
         Figure=Figure,
         Faces=Poly3DCollection,

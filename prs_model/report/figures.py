@@ -11,9 +11,8 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..modes.energy import Energies
-from ..modes.figure_file import write_figure
+from ..modes.figure_file import matplotlib_figure, write_figure
 from ..modes.mac import mac
-from ..response.picture import matplotlib_figure
 from .study import AtRest, Study
 
 if TYPE_CHECKING:
@@ -24,6 +23,11 @@ _GREYS = ("#31688e", "#bcd35f", "#440154", "#f4d06f", "#35b779", "#e8e8e8", "#7a
 _LINES = ("-", "--", ":")
 _WIDTH = 5.2  # inches: as wide as a phone, so that the letters can be read there
 _LEGEND: dict[str, Any] = {"fontsize": 9, "title_fontsize": 9, "handlelength": 1.8, "columnspacing": 1.4}
+
+
+def report_figure() -> Any:
+    """matplotlib's Figure. Raises MissingExtraError, or PrsError for a matplotlib that cannot be used."""
+    return matplotlib_figure("drawing a report", "report")
 
 
 @dataclass(frozen=True)
@@ -58,7 +62,7 @@ def _save(figure: Any, folder: Path, drawn: Figure) -> Figure:
 
 def _frf(response: FrequencyResponse, folder: Path) -> Figure:
     """Figure 11 of the paper: magnitude and phase along u, v, w."""
-    figure = matplotlib_figure()(figsize=(_WIDTH, 4.4), layout="constrained")
+    figure = report_figure()(figsize=(_WIDTH, 4.4), layout="constrained")
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
     peaks = []
     for axis, line in zip("uvw", _LINES, strict=True):
@@ -79,7 +83,7 @@ def _frf(response: FrequencyResponse, folder: Path) -> Figure:
 def _flexibility(rest: AtRest, folder: Path) -> Figure:
     """Figure 15 of the paper: what each mode gives to the static compliance."""
     shares = 100.0 * rest.shares[:, :3]
-    figure = matplotlib_figure()(figsize=(_WIDTH, 3.4), layout="constrained")
+    figure = report_figure()(figsize=(_WIDTH, 3.4), layout="constrained")
     axes = figure.subplots()
     numbers = np.arange(1.0, len(shares) + 1)
     for k, direction in enumerate("uvw"):
@@ -98,7 +102,7 @@ def _energy(study: Study, folder: Path, kind: str, energy: Energies) -> Figure:
     """All modes, like parts together."""
     groups = _by_kind(energy, study.modes.system.stems)
     count = len(study.modes.frequencies)
-    figure = matplotlib_figure()(figsize=(_WIDTH, 3.9), layout="constrained")
+    figure = report_figure()(figsize=(_WIDTH, 3.9), layout="constrained")
     axes = figure.subplots()
     numbers, base = np.arange(1.0, count + 1), np.zeros(count)
     for k, (name, share) in enumerate(groups.items()):
@@ -115,7 +119,7 @@ def _energy(study: Study, folder: Path, kind: str, energy: Energies) -> Figure:
 def _weak_energy(study: Study, folder: Path, kind: str, energy: Energies) -> Figure:
     """Figures 16 and 17 of the paper: the first two modes, limb by limb."""
     count = min(2, len(study.modes.frequencies))
-    figure = matplotlib_figure()(figsize=(_WIDTH, 3.9), layout="constrained")
+    figure = report_figure()(figsize=(_WIDTH, 3.9), layout="constrained")
     panels = figure.subplots(1, count, squeeze=False, sharey=True)[0]
     limbs, stems = study.modes.system.limbs, study.modes.system.stems
     places = list(dict.fromkeys(limbs.get(name, name) for name in energy))
@@ -141,7 +145,7 @@ def _mac(study: Study, first: Study, folder: Path) -> Figure:
     """Of the pose with itself, or with the first pose."""
     matrix = mac(first.modes, study.modes)
     same = study is first
-    figure = matplotlib_figure()(figsize=(4.6, 3.9), layout="constrained")
+    figure = report_figure()(figsize=(4.6, 3.9), layout="constrained")
     axes = figure.subplots()
     image = axes.imshow(matrix, cmap="Blues", vmin=0.0, vmax=1.0)
     for (i, j), value in np.ndenumerate(matrix):

@@ -64,9 +64,9 @@ def write_report(
 
 def check_folder(folder: str | Path, poses: int = 1) -> Path:
     """Make the folder. Raises PrsError when it cannot be made or written to, or MissingExtraError, before any work."""
-    from ..response.picture import matplotlib_figure
+    from .figures import report_figure
 
-    matplotlib_figure()
+    report_figure()
     environment()
     return folder_for(folder, poses)
 

@@ -9,10 +9,9 @@ from typing import Any
 import numpy as np
 
 from ..arrays import FloatArray
-from ..errors import MissingExtraError
 from ..modes.drawn import AMPLITUDE
-from ..modes.figure_file import write_figure
-from ..response.picture import matplotlib_figure
+from ..modes.figure_file import matplotlib_told, write_figure
+from .figures import report_figure
 from .scene import Scene
 from .study import Study
 
@@ -34,7 +33,7 @@ def draw_still(study: Study, scene: Scene, path: Path) -> None:
     columns = ceil(count / rows)
     panel = _WIDTH * _proportion(scene)
     width, height = _WIDTH * columns, (panel + _TITLE) * rows + _BAR
-    figure = matplotlib_figure()(figsize=(width, height))
+    figure = report_figure()(figsize=(width, height))
     figure.subplots_adjust(0.0, _BAR / height, 1.0, 1.0 - _TITLE / height, wspace=0.02, hspace=_TITLE / panel)
     panels = figure.subplots(rows, columns, squeeze=False).ravel()
     for axes in panels:
@@ -120,9 +119,7 @@ def _shade(corners: FloatArray) -> FloatArray:
 
 
 def _matplotlib() -> tuple[Any, Any]:
-    try:
+    with matplotlib_told("drawing a report", "report"):
         from matplotlib import colormaps
         from matplotlib.collections import PolyCollection
-    except ImportError as error:
-        raise MissingExtraError("matplotlib", "report", "drawing a report") from error
     return colormaps["viridis"], PolyCollection

@@ -32,9 +32,9 @@ def check_file(path: Path) -> None:
 
         pyuff()
     if suffix in PICTURES:
-        from .picture import matplotlib_figure
+        from ..modes.figure_file import matplotlib_figure
 
-        matplotlib_figure()
+        matplotlib_figure("drawing a frequency response")
     check_writable(path)
 
 

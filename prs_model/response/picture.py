@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..errors import MissingExtraError, PrsError
-from ..modes.figure_file import write_figure
+from ..modes.figure_file import matplotlib_figure, write_figure
 
 if TYPE_CHECKING:
     from .frequency_response import FrequencyResponse
@@ -29,7 +28,7 @@ def draw(responses: Mapping[str, FrequencyResponse], path: Path, pairs: Sequence
     first = next(iter(responses.values()))
     for pair in pairs:
         by_unit.setdefault(first.unit(pair), []).append(pair)
-    figure = matplotlib_figure()(figsize=(7.5 * len(by_unit), 5.6), layout="constrained")
+    figure = matplotlib_figure("drawing a frequency response")(figsize=(7.5 * len(by_unit), 5.6), layout="constrained")
     panels = figure.subplots(2, len(by_unit), sharex=True, squeeze=False, height_ratios=(2, 1))
     for k, (unit, some) in enumerate(by_unit.items()):
         _panel(panels[:, k], responses, some, unit)
@@ -54,14 +53,3 @@ def _panel(axes: Any, responses: Mapping[str, FrequencyResponse], pairs: Sequenc
     axes[1].set(xlabel="frequency / Hz", ylabel="phase / deg", ylim=(-190, 190), yticks=(-180, -90, 0, 90, 180))
     for each in axes:
         each.grid(True, alpha=0.3)
-
-
-def matplotlib_figure() -> Any:
-    """matplotlib's Figure. Raises MissingExtraError, or PrsError for a matplotlib that cannot be used."""
-    try:
-        from matplotlib.figure import Figure
-    except ImportError as error:
-        raise MissingExtraError("matplotlib", "plot", "drawing a frequency response") from error
-    except ValueError as error:  # a setting of its own that it does not take
-        raise PrsError(f"matplotlib cannot be used: {error}") from error
-    return Figure

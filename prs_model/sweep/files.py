@@ -38,9 +38,9 @@ def check_file(path: Path) -> None:
         _check_zarr(path)
         return
     if suffix in PICTURES:
-        from .picture import matplotlib_figure
+        from ..modes.figure_file import matplotlib_figure
 
-        matplotlib_figure()
+        matplotlib_figure("drawing a map")
     check_writable(path)
 
 

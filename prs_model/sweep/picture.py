@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from ..arrays import FloatArray
 from ..description.units import Dimension
-from ..errors import MissingExtraError, PrsError, UnknownNameError
-from ..modes.figure_file import write_figure
+from ..errors import PrsError, UnknownNameError
+from ..modes.figure_file import matplotlib_figure, write_figure
 from ..readable import readable
 from .contours import COLOURS, add_bar, fill, halo, mark
 from .panels import DRAWABLE, Panel, panels_of
@@ -54,7 +54,7 @@ def draw(data: xarray.Dataset, path: Path, quantity: str = "frequency") -> None:
     quantity: of DRAWABLE. The worst pose, of the lowest frequency or the largest compliance, is marked. The file
     appears only when it is complete. Raises PrsError or MissingExtraError.
     """
-    figure_class = matplotlib_figure()
+    figure_class = matplotlib_figure("drawing a map")
     _check(data, quantity)
     dims = tuple(map(str, data["reason"].dims))
     if len(dims) > 2:
@@ -79,18 +79,7 @@ def check_drawing(quantity: str) -> None:
     """Raise UnknownNameError, MissingExtraError or PrsError now if it could not be drawn later."""
     if quantity not in DRAWABLE:
         raise UnknownNameError("quantity to draw", quantity, list(DRAWABLE))
-    matplotlib_figure()
-
-
-def matplotlib_figure() -> Any:
-    """matplotlib's Figure. Raises MissingExtraError, or PrsError for a matplotlib that cannot be used."""
-    try:
-        from matplotlib.figure import Figure
-    except ImportError as error:
-        raise MissingExtraError("matplotlib", "plot", "drawing a map") from error
-    except ValueError as error:  # a setting of its own that it does not take
-        raise PrsError(f"matplotlib cannot be used: {error}") from error
-    return Figure
+    matplotlib_figure("drawing a map")
 
 
 def _check(data: xarray.Dataset, quantity: str) -> None:

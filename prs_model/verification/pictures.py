@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import FloatArray
-from ..errors import MissingExtraError, PrsError
-from ..modes.figure_file import write_figure
+from ..modes.figure_file import matplotlib_told, write_figure
 from ..modes.picture import draw_modes
 from .report import Comparison, ModelRun, VerificationReport
 from .tables import pose_texts
@@ -180,12 +179,8 @@ def check_drawing() -> None:
 
 
 def _matplotlib() -> SimpleNamespace:
-    try:
+    with matplotlib_told("drawing a verification"):
         from matplotlib import colormaps
         from matplotlib.cm import ScalarMappable
         from matplotlib.figure import Figure
-    except ImportError as error:
-        raise MissingExtraError("matplotlib", "plot", "drawing a verification") from error
-    except ValueError as error:  # a setting of its own that it does not take, such as MPLBACKEND
-        raise PrsError(f"matplotlib cannot be used: {error}") from error
     return SimpleNamespace(Figure=Figure, scale=ScalarMappable(cmap="Blues"), colours=colormaps["cividis"])
