@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from scipy.linalg import LinAlgError, cholesky, eigh
 
 from ..arrays import FloatArray
 from ..errors import PrsError
+
+Largest = Callable[[FloatArray, FloatArray, int], tuple[FloatArray, FloatArray]]
+"""Solves a x = mu b x for the largest mu, descending, and vectors of unit x^T b x."""
 
 _PIVOT_TOLERANCE = 1e-12
 _MASS_TOLERANCE = 1e-14
@@ -28,24 +31,16 @@ def lowest_modes(
     Raises PrsError when a direction has neither mass nor stiffness, or K is indefinite; `labels` name the coordinates.
     """
     shift, pencil = positive_definite_pencil(mass, stiffness, labels)
-    mu, shapes = _slowest(mass, pencil, count)
+    mu, shapes = slowest(mass, pencil, count)
     rate = slowest_rate(mass, stiffness)
     if shift == 0.0 and mu[0] * rate > _LOOSE:
         shift = _BELOW * rate
-        mu, shapes = _slowest(mass, stiffness - shift * mass, count)
+        mu, shapes = slowest(mass, stiffness - shift * mass, count)
     heavy = mu > _MASS_TOLERANCE * mu[0]
     mu, shapes = mu[heavy], shapes[:, heavy]
     shapes = shapes / np.sqrt(mu)
     signs = np.sign(shapes[np.argmax(np.abs(shapes), axis=0), np.arange(shapes.shape[1])])
     return 1.0 / mu + shift, shapes * signs
-
-
-def _slowest(mass: FloatArray, pencil: FloatArray, count: int) -> tuple[FloatArray, FloatArray]:
-    """The `count` largest mu of M x = mu (K - s M) x, descending, and shapes (n, count) of unit x^T (K - s M) x."""
-    scale = 1.0 / np.sqrt(np.diag(pencil))
-    scaling = np.outer(scale, scale)
-    mu, vectors = _largest(mass * scaling, pencil * scaling, count)
-    return mu, vectors * scale[:, None]
 
 
 def _largest(a: FloatArray, b: FloatArray, count: int) -> tuple[FloatArray, FloatArray]:
@@ -56,6 +51,20 @@ def _largest(a: FloatArray, b: FloatArray, count: int) -> tuple[FloatArray, Floa
     except LinAlgError:  # bisection may fail on clusters of eigenvalues, where solving for all of them does not
         mu, vectors = eigh(a, b, driver="gvd")
     return mu[::-1][:count], vectors[:, ::-1][:, :count]
+
+
+def slowest(
+    mass: FloatArray, pencil: FloatArray, count: int, largest: Largest = _largest
+) -> tuple[FloatArray, FloatArray]:
+    """The `count` largest mu of M x = mu (K - s M) x, descending, and shapes (n, count) of unit x^T (K - s M) x.
+
+    largest: solves the pencil scaled to a unit diagonal. Raises as it does where K - s M is not positive definite.
+    """
+    diagonal = np.diag(pencil)
+    scale = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
+    scaling = np.outer(scale, scale)
+    mu, vectors = largest(mass * scaling, pencil * scaling, count)
+    return mu, vectors * scale[:, None]
 
 
 def slowest_rate(mass: FloatArray, stiffness: FloatArray) -> float:

@@ -18,7 +18,6 @@ from scipy.linalg import LinAlgError
 
 from ..arrays import BoolArray, FloatArray
 from .exact import Solver
-from .low_modes import pencils
 
 if TYPE_CHECKING:
     from ..kinematics import Configurations
@@ -32,7 +31,7 @@ def nothing_missed(solver: Solver, configurations: Configurations, shapes: Float
     momenta = systems.mass @ shapes
     matrices = [
         stiffness - level * mass + _LIFTED * level * (free.T @ p) @ (p.T @ free)
-        for (mass, stiffness, free), p in zip(pencils(systems), momenta, strict=True)
+        for (mass, stiffness, free), p in zip(systems.pencils, momenta, strict=True)
     ]
     return np.array([_is_positive_definite(each) for each in matrices])
 

@@ -12,11 +12,11 @@ from ..arrays import FloatArray, IntArray
 from .exact import CHUNK, Solved, Solver, part
 from .frames import Frame, in_frame
 from .in_frame import carried, is_possible, quantities_in_frame
-from .quantities import Block, Labels, blank
+from .quantities import DENSE, Block, Labels, blank
 from .reasons import reason_codes
 from .request import Request
 from .rounding import rounding
-from .truth import DENSE, FOLLOWED, at_pose, check_count, with_mass
+from .truth import FOLLOWED, at_pose, check_count, with_mass
 
 if TYPE_CHECKING:
     from ..kinematics import Configurations

@@ -26,7 +26,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..synthesis.batch import Systems
-from .low_modes import LowModes, pencils
+from .low_modes import LowModes
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +73,7 @@ def complements(shapes: FloatArray, level: float, systems: Systems) -> FloatArra
     """Z (N, p, p) of shapes V (n, p) at a level [rad^2/s^2]."""
     momenta, p = systems.mass @ shapes, shapes.shape[1]
     result = np.empty((len(momenta), p, p))
-    for i, (mass, stiffness, free) in enumerate(pencils(systems)):
+    for i, (mass, stiffness, free) in enumerate(systems.pencils):
         bordered = np.zeros((len(mass) + p, len(mass) + p))
         bordered[:-p, :-p] = stiffness - level * mass
         bordered[:-p, -p:] = free.T @ momenta[i]

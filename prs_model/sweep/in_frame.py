@@ -17,7 +17,6 @@ from ..errors import PrsError
 from ..linear_algebra import positive_definite_pencil, slowest_rate
 from ..response.damping import is_proportional, modal_rates, modal_ratios
 from ..response.static import solved_scaled
-from .low_modes import pencils
 from .peaks import largest, places
 from .quantities import Block
 from .request import Request
@@ -102,7 +101,7 @@ def _at_rest(systems: Systems, frame: FloatArray) -> tuple[FloatArray, FloatArra
     """
     count = len(systems.mass)
     compliance, residual = np.full((count, 6, 6), np.nan), np.full((count, 4, 3), np.nan)
-    for i, (mass, stiffness, free) in enumerate(pencils(systems)):
+    for i, (mass, stiffness, free) in enumerate(systems.pencils):
         if positive_definite_pencil(mass, stiffness)[0] != 0.0:
             continue
         loads = free.T @ systems.output[i].T

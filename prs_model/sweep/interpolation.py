@@ -43,12 +43,15 @@ class Interpolation(Tensor):
         """Below all eigenvalues [rad^2/s^2]."""
         return self.frame.shift
 
-    def frequencies(self, values: FloatArray, count: int, kernels: Any = plain) -> tuple[FloatArray, FloatArray]:
-        """The lowest frequencies (m, count) [Hz] of interpolated values (e, m), and bounds of their relative errors."""
+    def frequencies(
+        self, values: FloatArray, count: int, kernels: Any = plain
+    ) -> tuple[FloatArray, FloatArray, BoolArray]:
+        """The lowest frequencies (m, count) [Hz] of interpolated values (e, m), bounds of their relative errors, and
+        whether none is missing (m,)."""
         packed = np.ascontiguousarray(values[self.parts["logarithm"]])
         shifted = np.exp(kernels.eigenvalues(packed, self.frame.size)[:count].T)
         eigenvalues = np.maximum(shifted + self.shift, 0.0)
-        return np.sqrt(eigenvalues) / (2.0 * np.pi), self.bound(eigenvalues)
+        return np.sqrt(eigenvalues) / (2.0 * np.pi), self.bound(eigenvalues), self.complete(values, kernels)
 
     def bound(self, eigenvalues: FloatArray) -> FloatArray:
         """Of the relative errors of the frequencies of eigenvalues [rad^2/s^2]."""

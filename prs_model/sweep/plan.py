@@ -21,7 +21,7 @@ from .interpolation import Interpolation
 from .plan_arrays import Arrays, from_arrays, to_arrays
 from .planning import Found, interpolated
 from .poses import Poses
-from .quantities import Block, Labels, labels
+from .quantities import COUNTED, INTERPOLATED, UNREACHABLE, Block, Labels, labels
 from .reasons import reason_codes
 from .request import Request
 from .ritz import RitzInterpolation
@@ -29,8 +29,6 @@ from .symmetry import Folded, folded
 
 if TYPE_CHECKING:
     from ..machine import Machine
-
-INTERPOLATED, COUNTED = 1, 3  # codes of `proof`
 
 _log = logging.getLogger("prs_model")
 _NEAR_LIMIT = 1e-6  # m, rad: within which interpolated joint values are worked out exactly
@@ -53,9 +51,9 @@ class Plan:
         if found is None:
             return solved_directly(self.machine, self.request, self.poses.block(start, stop), self._labels, 0.0)
         first, last, places = self._folded.span(start, stop) if self._folded is not None else (start, stop, None)
-        values = found.values(self.poses if self._folded is None else self._folded.distinct, first, last)
+        values = found.values(self._distinct, first, last, self._weights)
         block = self._quantities(found, values)
-        block["sure"] = found.complete(values, self.kernels) & (block["bound"] <= self.request.tolerance).all(axis=1)
+        block["sure"] &= (block["bound"] <= self.request.tolerance).all(axis=1)
         if self.request.exact_counts:
             block["sure"] &= self._counted(found, first, last)
         joints = values[found.parts["joints"]]
@@ -74,6 +72,17 @@ class Plan:
             return None
         return folded(self.interpolation.symmetry, self.poses)
 
+    @property
+    def _distinct(self) -> Poses:
+        """The poses that are worked out."""
+        return self.poses if self._folded is None else self._folded.distinct
+
+    @cached_property
+    def _weights(self) -> list[FloatArray] | None:
+        """Of a grid, for all pieces."""
+        found = self.interpolation
+        return found.weights(self._distinct) if found is not None and self.poses.is_grid else None
+
     def to_arrays(self) -> Arrays:
         """All but machine, poses and request, as numbers and text."""
         return to_arrays(self.interpolation, self.why)
@@ -88,23 +97,26 @@ class Plan:
         return labels(self.machine, self.request)
 
     def _quantities(self, found: Found, values: FloatArray) -> Block:
-        """What is asked at the poses of interpolated values (e, m), and the bound of each frequency."""
+        """What is asked at the poses of interpolated values (e, m), the bound of each frequency, and whether none is
+        missing."""
         if isinstance(found, RitzInterpolation) or self.request.quantities == ("frequency",):
-            frequencies, bounds = found.frequencies(values, self.request.n_modes, self.kernels)
-            return {"frequency": frequencies, "bound": np.array(bounds)}
+            frequencies, bounds, complete = found.frequencies(values, self.request.n_modes, self.kernels)
+            return {"frequency": frequencies, "bound": np.array(bounds), "sure": complete}
         eigenvalues, vectors = found.modes(values)
         held = {name: found.carried(values, name) for name in found.shapes}
         damping = self.machine.description.file.damping
-        bounds = np.array(found.bound(eigenvalues[:, : self.request.n_modes]))
-        return quantities_in_frame(eigenvalues, vectors, held, self.request, damping) | {"bound": bounds}
+        known = {
+            "bound": np.array(found.bound(eigenvalues[:, : self.request.n_modes])),
+            "sure": found.complete(values, self.kernels),
+        }
+        return quantities_in_frame(eigenvalues, vectors, held, self.request, damping) | known
 
     def _counted(self, found: Found, first: int, last: int) -> BoolArray:
         """Whether no mode is missed at poses first .. last - 1 of those worked out (m,), by the whole system."""
         counted = np.ones(last - first, dtype=bool)
         if found.level is None:
             return counted
-        poses = self.poses if self._folded is None else self._folded.distinct
-        configurations = self.machine.kinematics.solve_batch(poses.block(first, last))
+        configurations = self.machine.kinematics.solve_batch(self._distinct.block(first, last))
         there = np.flatnonzero(reason_codes(self.machine.kinematics.reach, configurations.q) == 0)
         solver = Solver(self.machine, 1, found.shift)
         for start in range(0, len(there), CHUNK):
@@ -132,7 +144,7 @@ class Plan:
         """Replace what is not sure by what the dense solver says."""
         if not some.size or self.interpolation is None:
             return
-        found, poses = self.interpolation, np.concatenate([self.poses.block(start + i, start + i + 1) for i in some])
+        found, poses = self.interpolation, self.poses.at(start + some)
         frame = found.frame if isinstance(found, Interpolation) else None
         exact = solved_directly(self.machine, self.request, poses, self._labels, found.shift, frame)
         for name, values in exact.items():
@@ -142,7 +154,7 @@ class Plan:
 def _forget(block: Block, unreachable: BoolArray) -> None:
     for name, values in block.items():
         if name != "reason":
-            values[unreachable] = 0 if name == "proof" else np.nan
+            values[unreachable] = UNREACHABLE if name == "proof" else np.nan
 
 
 def make_plan(machine: Machine, poses: Poses, request: Request, pool: ThreadPoolExecutor) -> Plan:

@@ -62,10 +62,7 @@ def interpolated(
     if not is_possible(request, machine.description.file.damping):
         return None, "resonance peaks under damping of joints"
     try:
-        planner = _Planner.of(machine, poses, request, pool)
-        if planner.symmetry is not None and planner.comes_near_limits():
-            planner = _Planner.of(machine, poses, request, pool, by_symmetry=False)
-        return planner.plan()
+        return _Planner.of(machine, poses, request, pool).by_symmetry().plan()
     except (NotSmoothError, PrsError) as error:
         return None, f"no interpolation: {error}"
 
@@ -81,24 +78,30 @@ class _Planner:
     pool: ThreadPoolExecutor
     shape: Shape
     solver: Solver
-    symmetry: Symmetry | None
+    symmetry: Symmetry | None = None
 
     @classmethod
-    def of(
-        cls, machine: Machine, poses: Poses, request: Request, pool: ThreadPoolExecutor, by_symmetry: bool = True
-    ) -> _Planner:
+    def of(cls, machine: Machine, poses: Poses, request: Request, pool: ThreadPoolExecutor) -> _Planner:
         shape = shape_of(machine.kinematics, poses)
         home = machine.assemble(machine.kinematics.solve_batch(shape.home[None])[0])
         shift, _ = positive_definite_pencil(home.mass, home.stiffness)
         solver = Solver(machine, _modes_needed(home, request), shift)
-        found, distinct = None, poses
-        if by_symmetry and request.quantities == ("frequency",):
-            few = replace(solver, count=request.n_modes)
-            found = symmetry_of(shape, _like_limbs(machine), request.tolerance, _logarithms(few, request, pool))
-        if found is not None:
-            distinct = folded(found, poses).distinct
-            shape = shape_of(machine.kinematics, distinct)
-        return cls(machine, poses, distinct, request, pool, shape, solver, found)
+        return cls(machine, poses, poses, request, pool, shape, solver)
+
+    def by_symmetry(self) -> _Planner:
+        """With fewer poses, if the machine is symmetric and no joint comes near its limits; frequencies only."""
+        if self.request.quantities != ("frequency",):
+            return self
+        few = replace(self.solver, count=self.request.n_modes)
+        logarithms = _logarithms(few, self.request, self.pool)
+        found = symmetry_of(self.shape, _like_limbs(self.machine), self.request.tolerance, logarithms)
+        if found is None:
+            return self
+        poses = folded(found, self.asked).distinct
+        shape = shape_of(self.machine.kinematics, poses)
+        return (
+            self if self._comes_near_limits(shape, found) else replace(self, poses=poses, shape=shape, symmetry=found)
+        )
 
     def plan(self) -> tuple[Found, str]:
         """The interpolation, and what was found in words. Raises NotSmoothError, or PrsError for nodes out of reach."""
@@ -110,9 +113,10 @@ class _Planner:
             return self._fitted(following(self.request, self.solver, home, values), lines)
         except NotSmoothError as error:
             reason = str(error)
-        if self.poses.size > _WORTH_RITZ:
-            samples += list(self.solver.each(self._scattered(), _kept, self.pool))
-        for size in _RITZ_SIZES if self.poses.size > _WORTH_RITZ else ():
+        if self.poses.size <= _WORTH_RITZ:
+            raise NotSmoothError(reason)
+        samples += list(self.solver.each(self._scattered(), _kept, self.pool))
+        for size in _RITZ_SIZES:
             try:
                 found, words = self._fitted(ritz_on_inverse(self.request, self.solver, home, samples, size), lines)
                 return found, f"{reason}; {words}"
@@ -127,7 +131,7 @@ class _Planner:
         """Some of the poses (m, d) [m, rad]."""
         count = min(_SCATTERED, self.poses.size)
         numbers = np.sort(np.random.default_rng(3).choice(self.poses.size, count, replace=False))
-        return np.concatenate([self.poses.block(i, i + 1) for i in numbers.tolist()])
+        return self.poses.at(numbers)
 
     def _fitted(self, approach: Approach, lines: list[list[Solved]]) -> tuple[Found, str]:
         """The interpolation by one approach, from lines solved already, with more nodes until its error is small."""
@@ -192,11 +196,9 @@ class _Planner:
         )
         return found, tails
 
-    def comes_near_limits(self) -> bool:
+    def _comes_near_limits(self, shape: Shape, symmetry: Symmetry) -> bool:
         """Whether a joint does somewhere, among all poses that are alike: limbs may be alike but for their limits."""
-        poses = self.shape.box((_COARSE,) * len(self.shape.columns)).poses()
-        if self.symmetry is not None:
-            poses = self.symmetry.images(poses)
+        poses = symmetry.images(shape.box((_COARSE,) * len(shape.columns)).poses())
         q = self.machine.kinematics.solve_batch(poses).q
         return bool(np.isnan(q).any() or self._near_limits(q))
 
@@ -214,7 +216,7 @@ class _Planner:
         """
         drawn = np.random.default_rng(2).choice(self.asked.size, _HELD_OUT, replace=False)
         numbers = sorted({*drawn.tolist(), *_corners(self.asked)})
-        poses = np.concatenate([self.asked.block(i, i + 1) for i in numbers])
+        poses = self.asked.at(numbers)
         poses = poses[self.machine.kinematics.solve_batch(poses).reachable]
         if not len(poses):
             raise NotSmoothError("none of the poses that were tried is within reach")
@@ -222,7 +224,7 @@ class _Planner:
         if self.symmetry is not None:
             poses[:, self.symmetry.column] = self.symmetry.folded(poses[:, self.symmetry.column])
         values = found.values(Poses(self.asked.names, (), poses), 0, len(poses))
-        frequencies, bounds = found.frequencies(values, self.request.n_modes)
+        frequencies, bounds, _ = found.frequencies(values, self.request.n_modes)
         errors = np.abs(frequencies / (np.sqrt(np.maximum(exact, np.finfo(float).tiny)) / (2.0 * np.pi)) - 1.0)
         sure = (bounds <= self.request.tolerance).all(axis=1)
         if np.any(errors[sure] > bounds[sure] + _ROUNDING) or sure.mean() < 0.5:

@@ -49,9 +49,13 @@ class Poses:
 
     def block(self, start: int, stop: int) -> FloatArray:
         """Poses start .. stop - 1 (m, d) [m, rad]."""
+        return self.at(np.arange(start, min(stop, self.size)))
+
+    def at(self, numbers: ArrayLike) -> FloatArray:
+        """The poses of these numbers (m, d) [m, rad]."""
+        numbers = np.asarray(numbers, dtype=np.intp)
         if self.points is not None:
-            return self.points[start:stop].copy()
-        numbers = np.arange(start, min(stop, self.size))
+            return np.asarray(self.points[numbers])
         places = np.unravel_index(numbers, self.shape) if self.axes else ()
         columns = [axis[place] for axis, place in zip(self.axes, places, strict=True)]
         return np.array(columns).reshape(len(columns), len(numbers)).T.copy()

@@ -24,7 +24,6 @@ from ..arrays import BoolArray, FloatArray
 from ..synthesis.batch import Systems
 from . import kernels as plain
 from .frames import complements
-from .low_modes import pencils
 from .tensor import Tensor
 
 _LACKING = 2.0  # times what the last quarter of the shapes adds
@@ -61,7 +60,7 @@ def ritz_matrices(basis: RitzBasis, systems: Systems) -> dict[str, FloatArray]:
     """A (N, r, r) and Z at the level (N, r, r), packed."""
     momenta, r = systems.mass @ basis.shapes, basis.size
     inverse = np.empty((len(momenta), r, r))
-    for i, (mass, stiffness, free) in enumerate(pencils(systems)):
+    for i, (mass, stiffness, free) in enumerate(systems.pencils):
         loads = free.T @ momenta[i]
         pencil = stiffness - basis.shift * mass
         scale = 1.0 / np.sqrt(np.diag(pencil))
@@ -98,20 +97,19 @@ class RitzInterpolation(Tensor):
         """Below all eigenvalues [rad^2/s^2]."""
         return self.basis.shift
 
-    def frequencies(self, values: FloatArray, count: int, kernels: Any = plain) -> tuple[FloatArray, FloatArray]:
-        """The lowest frequencies (m, count) [Hz] of interpolated values (e, m), and bounds of their relative errors."""
+    def frequencies(
+        self, values: FloatArray, count: int, kernels: Any = plain
+    ) -> tuple[FloatArray, FloatArray, BoolArray]:
+        """The lowest frequencies (m, count) [Hz] of interpolated values (e, m), bounds of their relative errors, and
+        whether as many Ritz values as eigenvalues lie below the level, so that none is missing (m,)."""
         matrices = plain.unpacked(values[self.parts["inverse"]], self.basis.size)
-        mu, less = (
-            np.linalg.eigvalsh(each)[:, : -count - 1 : -1]
-            for each in (matrices, matrices[:, : self.basis.first, : self.basis.first])
+        every, first = (
+            np.linalg.eigvalsh(each) for each in (matrices, matrices[:, : self.basis.first, : self.basis.first])
         )
+        mu, less = every[:, : -count - 1 : -1], first[:, : -count - 1 : -1]
         eigenvalues = np.maximum(1.0 / mu + self.shift, np.finfo(float).tiny)
         off = (_LACKING * np.abs(mu - less) + self.error + self.asymmetry * mu) / mu**2
-        return np.sqrt(eigenvalues) / (2.0 * np.pi), off / (2.0 * eigenvalues)
-
-    def complete(self, values: FloatArray, kernels: Any = plain) -> BoolArray:
-        """Whether as many Ritz values as eigenvalues lie below the level (m,), so that none is missing."""
-        packed = [np.ascontiguousarray(values[self.parts[name]]) for name in ("complement", "inverse")]
-        mu = np.linalg.eigvalsh(plain.unpacked(packed[1], self.basis.size))
-        found = (mu > 1.0 / (self.basis.level - self.shift)).sum(axis=1)
-        return np.asarray(kernels.negatives(packed[0], self.basis.size, self.slack) == found)
+        below = (every > 1.0 / (self.level - self.shift)).sum(axis=1)
+        packed = np.ascontiguousarray(values[self.parts["complement"]])
+        complete = np.asarray(kernels.negatives(packed, self.basis.size, self.slack) == below)
+        return np.sqrt(eigenvalues) / (2.0 * np.pi), off / (2.0 * eigenvalues), complete

@@ -17,7 +17,7 @@ from .identity import identity
 from .lazy import results
 from .plan import Plan, make_plan
 from .poses import Poses
-from .quantities import Block
+from .quantities import COUNTED, DENSE, INTERPOLATED, UNREACHABLE, Block
 from .request import Request
 from .room import check_room
 from .store import Store, blank, opened, piece_length
@@ -115,9 +115,9 @@ def certificate(plan: Plan, block: Mapping[str, Any]) -> dict[str, str | int | f
     proof = block["proof"]
     facts: dict[str, str | int | float] = {
         "how": plan.why,
-        "poses_interpolated": int(np.sum(np.isin(proof, (1, 3)))),
-        "poses_solved": int(np.sum(proof == 2)),
-        "poses_unreachable": int(np.sum(proof == 0)),
+        "poses_interpolated": int(np.sum(np.isin(proof, (INTERPOLATED, COUNTED)))),
+        "poses_solved": int(np.sum(proof == DENSE)),
+        "poses_unreachable": int(np.sum(proof == UNREACHABLE)),
     }
     bound = float(np.nan_to_num(block["bound"]).max()) if plan.interpolation is not None else 0.0
     if bound > 0.0:  # it has none where no pose is reachable

@@ -39,15 +39,18 @@ class Tensor:
         """What poses that stand for each other may differ by in log(lambda - shift)."""
         return 0.0 if self.symmetry is None else self.symmetry.defect
 
-    def values(self, poses: Poses, start: int, stop: int) -> FloatArray:
-        """All interpolated values (e, m) at poses start .. stop - 1, poses last."""
+    def weights(self, poses: Poses) -> list[FloatArray]:
+        """Along each axis of the box those of a grid's values (m_k, n_k)."""
+        axes = (poses.axes[column] for column in self.box.columns)
+        return [axis.weights(values) for axis, values in zip(self.box.axes, axes, strict=True)]
+
+    def values(self, poses: Poses, start: int, stop: int, weights: Sequence[FloatArray] | None = None) -> FloatArray:
+        """All interpolated values (e, m) at poses start .. stop - 1, poses last. weights: of a grid, if known."""
         if poses.points is not None:
             points = poses.points[start:stop]
             chunks = [self._terms.at(points[k : k + _POINTS]) for k in range(0, len(points), _POINTS)]
             return np.ascontiguousarray(np.concatenate(chunks).T)
-        axes = [poses.axes[column] for column in self.box.columns]
-        weights = [axis.weights(values) for axis, values in zip(self.box.axes, axes, strict=True)]
-        return _block(self._nodes_last, weights, start, stop)
+        return _block(self._nodes_last, weights or self.weights(poses), start, stop)
 
     @cached_property
     def _nodes_last(self) -> FloatArray:

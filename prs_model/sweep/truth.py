@@ -11,7 +11,7 @@ from ..errors import PrsError
 from ..linear_algebra import positive_definite_pencil, slowest_rate
 from ..response.modal_equations import modal_equations
 from .peaks import largest, places
-from .quantities import Block, Labels, blank, labels
+from .quantities import DENSE, Block, Labels, blank, labels
 from .request import Request
 from .rounding import rounding
 
@@ -19,9 +19,6 @@ if TYPE_CHECKING:
     from ..kinematics import Configuration
     from ..machine import Machine
     from ..modes import Modes
-
-DENSE = 2
-"""Code of `proof`: all modes of the whole system, LAPACK."""
 
 FOLLOWED = 4
 """Modes above those asked for, between which identities are followed."""

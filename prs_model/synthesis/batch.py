@@ -4,17 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import BoolArray, FloatArray
 from ..description import MachineDescription
 from ..description.limbs import limbs_of
 from ..joints import ElasticJoint
 from ..kinematics import Configurations
 from ..reduction import Elements, SuperElement, TravellingElement
 from .assembly import block_diagonal, ends_of, joined, springs_of
+from .elimination import independent_coordinates
 from .system import SpringMotion
+
+Pencil = tuple[FloatArray, FloatArray, FloatArray]
+"""(M, K, T) on independent coordinates v, with u = T v; T has a row for each body coordinate."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +48,20 @@ class Systems:
 
     def __len__(self) -> int:
         return len(self.mass)
+
+    @cached_property
+    def pencils(self) -> tuple[Pencil, ...]:
+        """Of each configuration."""
+        used = np.any(self.mass != 0.0, axis=(0, 1)) | np.any(self.stiffness != 0.0, axis=(0, 1))
+        pairs = zip(self.mass, self.stiffness, strict=True)
+        if self.constraints.shape[1]:
+            rigid = zip(self.constraints, self.constraint_sizes, strict=True)
+            return tuple(_held(*pair, *rows, used) for pair, rows in zip(pairs, rigid, strict=True))
+        free = np.eye(len(used))[:, used]
+        if used.all():
+            return tuple((mass, stiffness, free) for mass, stiffness in pairs)
+        both = np.ix_(used, used)
+        return tuple((mass[both], stiffness[both], free) for mass, stiffness in pairs)
 
 
 def assemble_many(
@@ -99,3 +118,9 @@ def _stacked(motion: SpringMotion, count: int) -> SpringMotion:
         each if len(each) == count else np.broadcast_to(each, (count, *each.shape[-2:])) for each in motion.motions
     )
     return replace(motion, motions=motions, stiffness=np.broadcast_to(motion.stiffness, (count, 6, 6)))
+
+
+def _held(mass: FloatArray, stiffness: FloatArray, rows: FloatArray, sizes: FloatArray, used: BoolArray) -> Pencil:
+    free, kept = independent_coordinates(rows, sizes)
+    free = free[:, used[kept]]
+    return free.T @ mass @ free, free.T @ stiffness @ free, free

@@ -10,7 +10,7 @@ from scipy.linalg import eigh, null_space
 
 import prs_model as prs
 from prs_model.sweep.frames import Frame, in_frame
-from prs_model.sweep.low_modes import LowModes, low_modes, pencils
+from prs_model.sweep.low_modes import LowModes, low_modes
 from prs_model.synthesis import Systems, assemble_many
 from tests.verification.gantry import TRAVEL, gantry
 
@@ -77,7 +77,7 @@ def test_negatives_of_the_complement_count_eigenvalues_below_any_level(
     for level in [0.5 * modes.eigenvalues[1, 0], *levels[: p + 3]]:
         found = in_frame(Frame(home, 0.0, float(level)), systems, modes)
         assert found.complements is not None
-        for i, (mass, stiffness, free) in enumerate(pencils(systems)):
+        for i, (mass, stiffness, free) in enumerate(systems.pencils):
             below = int((eigh(stiffness, mass, eigvals_only=True) < level).sum())
             rest = null_space(home.T @ systems.mass[i] @ free)
             in_rest = np.linalg.eigvalsh(rest.T @ (stiffness - level * mass) @ rest)
