@@ -2,6 +2,7 @@
 
 from .assembly import assemble, wide_joints
 from .batch import Systems, assemble_many
+from .dual import DualSystems, dual_assembly
 from .system import Coordinate, SpringMotion, System
 
-__all__ = ["Coordinate", "SpringMotion", "System", "Systems", "assemble", "assemble_many", "wide_joints"]
+__all__ = ["Coordinate", "DualSystems", "SpringMotion", "System", "Systems", "assemble", "assemble_many", "dual_assembly", "wide_joints"]

@@ -79,7 +79,7 @@ def assemble_many(
     for error in configurations.errors.values():
         raise error
     count = len(configurations)
-    elements = _elements(parts, configurations)
+    elements = elements_in(parts, configurations)
     ends = ends_of(description, elements, configurations)
     mass, stiffness = block_diagonal(elements, ends.blocks, (count,))
     motions, constraints, sizes = joined(springs_of(joints, configurations), ends, stiffness)
@@ -102,9 +102,10 @@ def assemble_many(
     )
 
 
-def _elements(
+def elements_in(
     parts: Mapping[str, SuperElement | TravellingElement], configurations: Configurations
 ) -> dict[str, Elements]:
+    """Every part where its contacts are in many configurations."""
     values = configurations.joint_values
     return {
         name: part.at_many(values[part.joint]) if isinstance(part, TravellingElement) else Elements.of(part)
