@@ -149,7 +149,6 @@ class Machine:
         quantities: str | Iterable[str] = ("frequency",),
         tolerance: float = 1e-6,
         band: tuple[float, float] | None = None,
-        exact_counts: bool = False,
         progress: Callable[[int, int], None] | None = None,
         store: str | Path | None = None,
         cluster: object = None,
@@ -160,8 +159,7 @@ class Machine:
         coordinates: values of each pose coordinate [m, rad], of which all combinations are taken; those left out keep
         their reference values. poses: a list (N, d) in their place, columns as in `pose_names`.
         quantities: of prs_model.sweep.QUANTITIES. tolerance: relative, of every frequency beside the dense
-        eigenproblem. band: (lowest, highest) [Hz] in which resonance peaks are sought. exact_counts: test at every
-        pose, by the whole system, that no mode was missed, for about a third of the time that solving it takes.
+        eigenproblem. band: (lowest, highest) [Hz] in which resonance peaks are sought.
         progress: called with the number of poses done and of all. store: a folder that keeps what is finished, so that
         the same call goes on after an interruption. cluster: a Dask client, or the address of its scheduler.
         Unreachable poses are marked in `reason` and have NaN. Raises PrsError for what cannot be asked of the machine.
@@ -169,7 +167,7 @@ class Machine:
         from .sweep import Request, poses_of, sweep
 
         chosen = (quantities,) if isinstance(quantities, str) else tuple(quantities)
-        request = Request(n_modes, chosen, tolerance, band, exact_counts)
+        request = Request(n_modes, chosen, tolerance, band)
         return sweep(self, poses_of(self, coordinates, poses), request, progress, store, cluster)
 
     def complete_order(self, coupling: Coupling = "averaged", cache: Path | None = None) -> CompleteOrder:

@@ -52,12 +52,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--tolerance", type=float, default=1e-6, help="relative, of every frequency (default 1e-6)", metavar="SHARE"
     )
-    parser.add_argument(
-        "--exact-counts",
-        action="store_true",
-        help="test at every pose, on the whole system, that no mode was missed; takes about a third of the time of "
-        "solving it",
-    )
     add_outputs(parser, "write .nc, .zarr, .csv, or a picture .png, .svg, .pdf")
     parser.add_argument("--draw", default="frequency", metavar="NAME", help="what a picture shows (default frequency)")
     parser.add_argument(
@@ -80,7 +74,7 @@ def run(options: argparse.Namespace) -> dict[str, Any]:
     from ..sweep.summary import summary
 
     band = None if options.band is None else tuple(options.band)
-    request = Request(options.count, ("frequency", *options.quantity), options.tolerance, band, options.exact_counts)
+    request = Request(options.count, ("frequency", *options.quantity), options.tolerance, band)
     for file in options.output:
         check_file(file)
         if file.suffix.lower() in PICTURES:

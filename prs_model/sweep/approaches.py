@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
@@ -52,6 +52,10 @@ class Approach(Protocol):
     def interpolation(self, shapes: Mapping[str, tuple[int, ...]], **tensor: Any) -> Interpolation | RitzInterpolation:
         """Of a tensor, with shapes at one pose of what is in it."""
 
+    @property
+    def level(self) -> float | None:
+        """Below which eigenvalues are counted [rad^2/s^2]; None where there are no others."""
+
     def words(self) -> str:
         """What is followed."""
 
@@ -72,17 +76,21 @@ class Following:
     def count(self) -> int:
         return self.frame.size + 1
 
+    @property
+    def level(self) -> float | None:
+        return self.frame.level
+
     def on_line(self, solved: Solved) -> FloatArray:
-        return self._matrices(replace(self.frame, level=None), solved)["logarithm"]
+        return self._matrices(solved)["logarithm"]
 
     def at_nodes(self, solved: Solved) -> dict[str, FloatArray]:
-        matrices = self._matrices(self.frame, solved)
+        matrices = self._matrices(solved)
         frames = matrices.pop("frames")
         only = self.request.quantities == ("frequency",)
         return matrices | ({} if only else carried(solved.systems, frames, self.request))
 
     def interpolation(self, shapes: Mapping[str, tuple[int, ...]], **tensor: Any) -> Interpolation:
-        own = ("logarithm", "complement", "joints")
+        own = ("logarithm", "joints")
         return Interpolation(
             **tensor, frame=self.frame, shapes={name: each for name, each in shapes.items() if name not in own}
         )
@@ -92,21 +100,16 @@ class Following:
         below = "" if level is None else f", below {np.sqrt(level) / (2.0 * np.pi):.1f} Hz"
         return f"{self.frame.size} modes followed together{below}"
 
-    @staticmethod
-    def _matrices(frame: Frame, solved: Solved) -> dict[str, FloatArray]:
-        """Packed L and Z, and the frames W. Raises NotSmoothError where the frame does not fit."""
+    def _matrices(self, solved: Solved) -> dict[str, FloatArray]:
+        """Packed L, and the frames W. Raises NotSmoothError where the frame does not fit, or another mode comes in."""
+        frame, values = self.frame, solved.modes.eigenvalues
         found = in_frame(frame, solved.systems, solved.modes)
         if found.alignment.min() < _LEAST_ALIGNMENT:
             raise NotSmoothError("the low shapes change too much over the poses")
+        if frame.level is not None and values.shape[1] > frame.size and np.any(values[:, frame.size] < frame.level):
+            raise NotSmoothError("another mode comes below the level")
         rows, columns = np.tril_indices(frame.size)
-        matrices = {"logarithm": found.logarithms[:, rows, columns], "frames": found.frames}
-        if found.complements is not None and frame.level is not None:
-            if np.any(solved.modes.eigenvalues[:, frame.size] < frame.level):
-                raise NotSmoothError("another mode comes below the level")
-            if np.any((np.linalg.eigvalsh(found.complements) < 0.0).sum(axis=1) != frame.size):
-                raise NotSmoothError("modes cross the level")
-            matrices["complement"] = found.complements[:, rows, columns]
-        return matrices
+        return {"logarithm": found.logarithms[:, rows, columns], "frames": found.frames}
 
 
 @dataclass(frozen=True)
@@ -125,6 +128,10 @@ class RitzOnInverse:
     @property
     def count(self) -> int:
         return self.request.n_modes
+
+    @property
+    def level(self) -> float | None:
+        return self.basis.level
 
     def on_line(self, solved: Solved) -> FloatArray:
         return self.at_nodes(solved)["inverse"]

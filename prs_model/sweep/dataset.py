@@ -14,7 +14,7 @@ from ..description.units import SI
 from ..readable import pose_text
 from ..response.quantity import DIRECTIONS, unit
 from .poses import Poses
-from .quantities import COUNTED, DENSE, INTERPOLATED, UNREACHABLE, Block, labels, variables
+from .quantities import DENSE, INTERPOLATED, UNREACHABLE, Block, labels, variables
 from .reasons import sentences
 from .request import Request
 from .tracking import Identities, follow, followed_nowhere
@@ -24,13 +24,10 @@ if TYPE_CHECKING:
 
     from ..machine import Machine
 
-_ESTIMATED = "interpolated, its error estimated to be within the bound"
-
 PROOFS: Mapping[int, str] = {
     UNREACHABLE: "none, the pose is unreachable",
-    INTERPOLATED: _ESTIMATED,
-    DENSE: "all modes of the whole system",
-    COUNTED: f"{_ESTIMATED}, and no mode missed by counts on the whole system",
+    INTERPOLATED: "interpolated, its error estimated to be within the bound, and no mode missed by a count",
+    DENSE: "the modes of the whole system",
 }
 """Codes of `proof` in words."""
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..synthesis.batch import Systems, assemble_many
+from ..synthesis import DualSystems, Systems, assemble_many, dual_assembly
 from .low_modes import LowModes, low_modes
 
 if TYPE_CHECKING:
@@ -51,17 +51,28 @@ class Solver:
         machine = self.machine
         return assemble_many(machine.description, machine.parts, machine.joints, configurations)
 
+    def dual(self, configurations: Configurations) -> DualSystems:
+        """The dual form in a chunk of configurations."""
+        machine = self.machine
+        return dual_assembly(machine.description, machine.parts, machine.joints, configurations)
+
     def each(self, poses: FloatArray, what: Callable[[Solved], _T], pool: ThreadPoolExecutor) -> Iterator[_T]:
         """`what` of the solved poses (N, d), chunk by chunk in order, on all cores.
 
         Raises PrsError where a pose has no configuration.
         """
+        return pool.map(lambda chunk: what(self.solve(chunk)), self._chunks(poses))
+
+    def each_dual(self, poses: FloatArray, what: Callable[[DualSystems], _T], pool: ThreadPoolExecutor) -> Iterator[_T]:
+        """As `each`, of dual forms."""
+        return pool.map(lambda chunk: what(self.dual(chunk)), self._chunks(poses))
+
+    def _chunks(self, poses: FloatArray) -> list[Configurations]:
         found = self.machine.kinematics.solve_batch(poses)
         if np.isnan(found.q).any():
             raise found.errors[int(np.flatnonzero(np.isnan(found.q).any(axis=1))[0])]
         size = min(CHUNK, max(_SMALLEST, -(-len(poses) // _SHARES)))
-        chunks = [part(found, slice(start, start + size)) for start in range(0, len(poses), size)]
-        return pool.map(lambda chunk: what(self.solve(chunk)), chunks)
+        return [part(found, slice(start, start + size)) for start in range(0, len(poses), size)]
 
 
 def part(configurations: Configurations, some: slice | IntArray) -> Configurations:

@@ -38,7 +38,6 @@ def identity(machine: Machine, poses: Poses, request: Request) -> str:
             "quantities": list(request.quantities),
             "tolerance": request.tolerance,
             "band": list(request.band or ()),
-            "exact_counts": request.exact_counts,
         },
     }
     return json.dumps(content, sort_keys=True, separators=(",", ":"))

@@ -1,7 +1,6 @@
 """Frequencies, and what comes with them, from matrices of the smooth frame interpolated between nodes.
 
-At each pose the interpolated L (see `frames`) is diagonalised. The interpolated Z counts the eigenvalues below the
-level, so that a pose where another number of modes than p lies there, or one too near the level to tell, is told.
+At each pose the interpolated L (see `frames`) is diagonalised.
 """
 
 from __future__ import annotations
@@ -12,15 +11,15 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import BoolArray, FloatArray
+from ..arrays import FloatArray, IntArray
 from . import kernels as plain
 from .frames import Frame
-from .tensor import Tensor
+from .tensor import Interpolated
 
 
 @dataclass(frozen=True, eq=False)
-class Interpolation(Tensor):
-    """A tensor of L, of Z, and of what else is carried, with shapes at one pose by name; frame: the modes of L.
+class Interpolation(Interpolated):
+    """A tensor of L, and of what else is carried, with shapes at one pose by name; frame: the modes of L.
 
     The error is that of log(lambda - shift).
     """
@@ -29,47 +28,36 @@ class Interpolation(Tensor):
     shapes: Mapping[str, tuple[int, ...]]
 
     @property
-    def level(self) -> float | None:
-        """Below which eigenvalues are counted [rad^2/s^2]; None where there are no others."""
-        return self.frame.level
-
-    @property
-    def counted(self) -> FloatArray:
-        """The shapes (n, p) of Z."""
-        return self.frame.home
-
-    @property
     def shift(self) -> float:
         """Below all eigenvalues [rad^2/s^2]."""
         return self.frame.shift
 
     def frequencies(
         self, values: FloatArray, count: int, kernels: Any = plain
-    ) -> tuple[FloatArray, FloatArray, BoolArray]:
+    ) -> tuple[FloatArray, FloatArray, IntArray]:
         """The lowest frequencies (m, count) [Hz] of interpolated values (e, m), bounds of their relative errors, and
-        whether none is missing (m,)."""
+        how many modes it has below the level of its counting (m,)."""
         packed = np.ascontiguousarray(values[self.parts["logarithm"]])
-        shifted = np.exp(kernels.eigenvalues(packed, self.frame.size)[:count].T)
-        eigenvalues = np.maximum(shifted + self.shift, 0.0)
-        return np.sqrt(eigenvalues) / (2.0 * np.pi), self.bound(eigenvalues), self.complete(values, kernels)
+        every = kernels.eigenvalues(packed, self.frame.size)
+        eigenvalues = np.maximum(np.exp(every[:count].T) + self.shift, 0.0)
+        return np.sqrt(eigenvalues) / (2.0 * np.pi), self.bound(eigenvalues), self._below(every)
 
     def bound(self, eigenvalues: FloatArray) -> FloatArray:
         """Of the relative errors of the frequencies of eigenvalues [rad^2/s^2]."""
         away = 1.0 if self.shift == 0.0 else (eigenvalues - self.shift) / np.maximum(eigenvalues, np.finfo(float).tiny)
         return np.asarray(np.broadcast_to((self.error + self.asymmetry) / 2.0 * away, eigenvalues.shape))
 
-    def modes(self, values: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Eigenvalues (m, p) [rad^2/s^2] ascending and vectors (m, p, p) in the frame, of values (e, m)."""
+    def modes(self, values: FloatArray) -> tuple[FloatArray, FloatArray, IntArray]:
+        """Eigenvalues (m, p) [rad^2/s^2] ascending and vectors (m, p, p) in the frame, of values (e, m); and how many
+        modes it has below the level of its counting (m,)."""
         logarithms, vectors = np.linalg.eigh(plain.unpacked(values[self.parts["logarithm"]], self.frame.size))
-        return np.exp(logarithms) + self.shift, vectors
+        return np.exp(logarithms) + self.shift, vectors, self._below(logarithms.T)
 
     def carried(self, values: FloatArray, name: str) -> FloatArray:
         """One of the carried quantities (m, ..)."""
         return values[self.parts[name]].T.reshape(-1, *self.shapes[name])
 
-    def complete(self, values: FloatArray, kernels: Any = plain) -> BoolArray:
-        """Whether exactly p eigenvalues lie below the level (m,), proved for every pose by itself."""
+    def _below(self, logarithms: FloatArray) -> IntArray:
         if self.frame.level is None:
-            return np.ones(values.shape[1], dtype=bool)
-        packed = np.ascontiguousarray(values[self.parts["complement"]])
-        return np.asarray(kernels.negatives(packed, self.frame.size, self.slack) == self.frame.size)
+            return np.full(logarithms.shape[1], self.frame.size)
+        return np.asarray((logarithms < np.log(self.frame.level - self.shift)).sum(axis=0))

@@ -27,10 +27,8 @@ def eigenvalues(packed: FloatArray, p: int) -> FloatArray:
 
 
 def negatives(packed: FloatArray, p: int, slack: float) -> IntArray:
-    """Number of negative eigenvalues (m,), or -1 where one lies within `slack` of zero."""
-    values = np.linalg.eigvalsh(unpacked(packed, p))
-    surely, perhaps = (values < -slack).sum(axis=1), (values < slack).sum(axis=1)
-    return np.where(surely == perhaps, surely, -1)
+    """Number of eigenvalues below -slack (m,)."""
+    return np.asarray((np.linalg.eigvalsh(unpacked(packed, p)) < -slack).sum(axis=1))
 
 
 def as_frobenius(packed: FloatArray) -> FloatArray:

@@ -2,7 +2,7 @@
 
 A rotation by t in the plane (i, j) makes a_ij zero; a few sweeps over all planes leave the eigenvalues on the diagonal
 to rounding (Golub & Van Loan, Matrix Computations, 8.5). Numbers of negative eigenvalues are those of the pivots
-(Sylvester), counted on both sides of zero.
+(Sylvester).
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 _WIDTH = 32
+_NARROW = 8  # the same for elimination
 _SWEEPS = 12
 _PIVOT = 1e-7  # of the largest entry: elimination loses no more digits than that
 _CONVERGED = 1e-12  # of the largest diagonal entry, of what is left beside the diagonals
@@ -81,31 +82,35 @@ def _rotate(a: FloatArray, i: int, j: int, p: int, c: FloatArray, s: FloatArray)
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
 def negatives(packed: FloatArray, p: int, slack: float) -> IntArray:
-    """Number of negative eigenvalues (m,), or -1 where one lies within `slack` of zero, or a pivot is too small."""
+    """Number of eigenvalues below -slack (m,), or -1 where a pivot is too small to tell."""
     m = packed.shape[1]
     result = np.empty(m, dtype=np.int64)
-    a, counts = np.empty((p, p, _WIDTH)), np.empty((2, _WIDTH), dtype=np.int64)
-    size, sure = np.empty(_WIDTH), np.empty(_WIDTH, dtype=np.bool_)
-    for start in range(0, m, _WIDTH):
-        width = min(_WIDTH, m - start)
-        sure[:] = True
-        for side in range(2):
-            size[:] = 0.0
-            for i in range(p):
-                for j in range(i + 1):
-                    shift = (slack if side == 0 else -slack) if i == j else 0.0
-                    for k in range(width):
-                        a[i, j, k] = packed[i * (i + 1) // 2 + j, start + k] + shift
-                        size[k] = max(size[k], abs(a[i, j, k]))
-            counts[side] = 0
-            for j in range(p):
-                for k in range(width):
-                    counts[side, k] += a[j, j, k] < 0.0
-                    sure[k] &= abs(a[j, j, k]) > _PIVOT * size[k]
-                for i in range(j + 1, p):
-                    for h in range(j + 1, i + 1):
-                        for k in range(width):
-                            a[i, h, k] -= a[i, j, k] * a[h, j, k] / a[j, j, k]
+    a = np.ones((p * (p + 1) // 2, _NARROW))
+    factor, size = np.empty(_NARROW), np.empty(_NARROW)
+    for start in range(0, m, _NARROW):
+        width = min(_NARROW, m - start)
+        count, sure = np.zeros(_NARROW, dtype=np.int64), np.ones(_NARROW, dtype=np.bool_)
+        size[:] = 0.0
+        for e in range(len(a)):
+            for k in range(width):
+                a[e, k] = packed[e, start + k]
+                size[k] = max(size[k], abs(a[e, k]))
+        for j in range(p):
+            for k in range(width):
+                a[j * (j + 3) // 2, k] += slack
+        for j in range(p):
+            diagonal = j * (j + 3) // 2
+            for k in range(width):
+                count[k] += a[diagonal, k] < 0.0
+                sure[k] &= abs(a[diagonal, k]) > _PIVOT * size[k]
+            for i in range(j + 1, p):
+                row = i * (i + 1) // 2
+                for k in range(_NARROW):
+                    factor[k] = a[row + j, k] / a[diagonal, k]
+                for h in range(j + 1, i + 1):
+                    below = h * (h + 1) // 2 + j
+                    for k in range(_NARROW):
+                        a[row + h, k] -= factor[k] * a[below, k]
         for k in range(width):
-            result[start + k] = counts[0, k] if sure[k] and counts[0, k] == counts[1, k] else -1
+            result[start + k] = count[k] if sure[k] else -1
     return result

@@ -11,21 +11,20 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import BoolArray, FloatArray
+from ..arrays import BoolArray, FloatArray, IntArray
 from . import kernels as plain
-from .counts import nothing_missed
 from .direct import solved_directly
-from .exact import CHUNK, Solver, part
 from .in_frame import quantities_in_frame
 from .interpolation import Interpolation
 from .plan_arrays import Arrays, from_arrays, to_arrays
 from .planning import Found, interpolated
 from .poses import Poses
-from .quantities import COUNTED, INTERPOLATED, UNREACHABLE, Block, Labels, labels
+from .quantities import INTERPOLATED, UNREACHABLE, Block, Labels, labels
 from .reasons import reason_codes
 from .request import Request
 from .ritz import RitzInterpolation
 from .symmetry import Folded, folded
+from .tensor import Reader
 
 if TYPE_CHECKING:
     from ..machine import Machine
@@ -51,17 +50,17 @@ class Plan:
         if found is None:
             return solved_directly(self.machine, self.request, self.poses.block(start, stop), self._labels, 0.0)
         first, last, places = self._folded.span(start, stop) if self._folded is not None else (start, stop, None)
-        values = found.values(self._distinct, first, last, self._weights)
+        values = self._reader(first, last)
         block = self._quantities(found, values)
-        block["sure"] &= (block["bound"] <= self.request.tolerance).all(axis=1)
-        if self.request.exact_counts:
-            block["sure"] &= self._counted(found, first, last)
+        block["sure"] = (block["bound"] <= self.request.tolerance).all(axis=1) & self._complete(
+            block.pop("below"), first
+        )
         joints = values[found.parts["joints"]]
         if places is not None:
             block, joints = {name: each[places] for name, each in block.items()}, joints[:, places]
         sure = block.pop("sure")
         block["reason"] = self._reasons(found, joints, start, stop)
-        block["proof"] = np.full(stop - start, COUNTED if self.request.exact_counts else INTERPOLATED, dtype=np.int8)
+        block["proof"] = np.full(stop - start, INTERPOLATED, dtype=np.int8)
         self._solve(block, np.flatnonzero(~sure & (block["reason"] == 0)), start)
         _forget(block, block["reason"] != 0)
         return block
@@ -78,10 +77,22 @@ class Plan:
         return self.poses if self._folded is None else self._folded.distinct
 
     @cached_property
-    def _weights(self) -> list[FloatArray] | None:
-        """Of a grid, for all pieces."""
-        found = self.interpolation
-        return found.weights(self._distinct) if found is not None and self.poses.is_grid else None
+    def _reader(self) -> Reader:
+        assert self.interpolation is not None
+        return self.interpolation.reader(self._distinct)
+
+    @cached_property
+    def _counted(self) -> Reader | None:
+        counting = None if self.interpolation is None else self.interpolation.counting
+        return None if counting is None else counting.reader(self._distinct)
+
+    def _complete(self, below: IntArray, first: int) -> BoolArray:
+        """Whether none is missing of the modes asked for at the poses from `first` on, `below` (m,) of which were found
+        below the level of counting."""
+        if self._counted is None or self.interpolation is None or self.interpolation.counting is None:
+            return np.ones(len(below), dtype=bool)
+        most = self.interpolation.counting.at_most(self._counted(first, first + len(below)), self.kernels)
+        return np.asarray((most == below) & (below >= self.request.n_modes))
 
     def to_arrays(self) -> Arrays:
         """All but machine, poses and request, as numbers and text."""
@@ -97,32 +108,16 @@ class Plan:
         return labels(self.machine, self.request)
 
     def _quantities(self, found: Found, values: FloatArray) -> Block:
-        """What is asked at the poses of interpolated values (e, m), the bound of each frequency, and whether none is
-        missing."""
+        """What is asked at the poses of interpolated values (e, m), the bound of each frequency, and how many modes
+        were found below the level of counting."""
         if isinstance(found, RitzInterpolation) or self.request.quantities == ("frequency",):
-            frequencies, bounds, complete = found.frequencies(values, self.request.n_modes, self.kernels)
-            return {"frequency": frequencies, "bound": np.array(bounds), "sure": complete}
-        eigenvalues, vectors = found.modes(values)
+            frequencies, bounds, below = found.frequencies(values, self.request.n_modes, self.kernels)
+            return {"frequency": frequencies, "bound": np.array(bounds), "below": below}
+        eigenvalues, vectors, below = found.modes(values)
         held = {name: found.carried(values, name) for name in found.shapes}
         damping = self.machine.description.file.damping
-        known = {
-            "bound": np.array(found.bound(eigenvalues[:, : self.request.n_modes])),
-            "sure": found.complete(values, self.kernels),
-        }
+        known = {"bound": np.array(found.bound(eigenvalues[:, : self.request.n_modes])), "below": below}
         return quantities_in_frame(eigenvalues, vectors, held, self.request, damping) | known
-
-    def _counted(self, found: Found, first: int, last: int) -> BoolArray:
-        """Whether no mode is missed at poses first .. last - 1 of those worked out (m,), by the whole system."""
-        counted = np.ones(last - first, dtype=bool)
-        if found.level is None:
-            return counted
-        configurations = self.machine.kinematics.solve_batch(self._distinct.block(first, last))
-        there = np.flatnonzero(reason_codes(self.machine.kinematics.reach, configurations.q) == 0)
-        solver = Solver(self.machine, 1, found.shift)
-        for start in range(0, len(there), CHUNK):
-            some = there[start : start + CHUNK]
-            counted[some] = nothing_missed(solver, part(configurations, some), found.counted, found.level)
-        return counted
 
     def _reasons(self, found: Found, joints: FloatArray, start: int, stop: int) -> NDArray[np.int16]:
         """Codes of joints beyond their limits (m,), from values (j, m) of those that come near [m, rad].

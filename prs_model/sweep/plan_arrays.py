@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .counting import Counting
 from .frames import Frame
 from .interpolation import Interpolation
 from .ritz import RitzBasis, RitzInterpolation
@@ -18,7 +19,9 @@ from .symmetry import Symmetry
 
 Arrays = dict[str, NDArray[Any]]
 
-_KINDS = {kind.__name__: kind for kind in (Interpolation, RitzInterpolation, Box, Axis, Frame, RitzBasis, Symmetry)}
+_KINDS = {
+    kind.__name__: kind for kind in (Interpolation, RitzInterpolation, Box, Axis, Frame, RitzBasis, Symmetry, Counting)
+}
 _TEXT = "json"
 
 

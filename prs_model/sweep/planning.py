@@ -14,6 +14,7 @@ from ..errors import PrsError
 from ..linear_algebra import positive_definite_pencil
 from .approaches import EXTRA, Approach, NotSmoothError, following, ritz_on_inverse
 from .box_of import MOST_COORDINATES, Shape, shape_of
+from .counting import Counting, counting
 from .exact import Solved, Solver
 from .in_frame import is_possible, reaches
 from .interpolation import Interpolation
@@ -23,7 +24,6 @@ from .request import Request
 from .ritz import RitzInterpolation
 from .spectral import Box
 from .symmetry import Logarithms, Symmetry, folded, symmetry_of
-from .tensor import NEGLIGIBLE
 
 if TYPE_CHECKING:
     from ..machine import Machine
@@ -44,6 +44,7 @@ _ATTEMPTS = 4
 _HELD_OUT = 24
 _ROOM = 0.1  # of the range of a joint's values at the nodes, by which it may go further in between
 _LIMIT_SLACK = 1e-6  # m, rad
+_NEGLIGIBLE = 0.02  # of the error, what terms left out at the points of a list may add
 _ROUNDING = 1e-11  # of a frequency
 
 
@@ -147,7 +148,8 @@ class _Planner:
             if found.error <= most:
                 share, worst = planner._held_out(found)
                 if worst is not None:
-                    return found, self._in_words(found, approach, share, worst)
+                    counted = replace(found, counting=planner._counting(approach))
+                    return counted, self._in_words(counted, approach, share, worst)
                 tails = tuple(tail + found.error for tail in tails)
             counts = tuple(_more(count, tail, max(tails)) for count, tail in zip(box.shape, tails, strict=True))
         raise NotSmoothError(f"{len(box.solved)} nodes are not enough")
@@ -183,18 +185,24 @@ class _Planner:
         }
         nodes = box.unfold(np.hstack(list(flat.values())))
         tails = box.tail(as_frobenius(nodes[..., parts[approach.main]]))
-        slack = 2.0 * sum(box.tail(as_frobenius(nodes[..., parts["complement"]]))) if "complement" in parts else 0.0
+        error = (1.0 + _NEGLIGIBLE) * sum(tails)
         found = approach.interpolation(
             {name: each.shape[1:] for name, each in values.items()},
             box=box,
             nodes=nodes,
             parts=parts,
-            error=(1.0 + NEGLIGIBLE) * sum(tails),
-            slack=slack,
+            negligible=_NEGLIGIBLE * error,
+            error=error,
             joints=tuple(joints),
             symmetry=self.symmetry,
+            counting=None,
         )
         return found, tails
+
+    def _counting(self, approach: Approach) -> Counting | None:
+        if approach.level is None:
+            return None
+        return counting(self.solver, self.shape, self.poses, approach.level, self.pool)
 
     def _comes_near_limits(self, shape: Shape, symmetry: Symmetry) -> bool:
         """Whether a joint does somewhere, among all poses that are alike: limbs may be alike but for their limits."""
@@ -223,7 +231,7 @@ class _Planner:
         exact = np.exp(_logarithms(self.solver, self.request, self.pool)(poses)) + self.solver.shift
         if self.symmetry is not None:
             poses[:, self.symmetry.column] = self.symmetry.folded(poses[:, self.symmetry.column])
-        values = found.values(Poses(self.asked.names, (), poses), 0, len(poses))
+        values = found.reader(Poses(self.asked.names, (), poses))(0, len(poses))
         frequencies, bounds, _ = found.frequencies(values, self.request.n_modes)
         errors = np.abs(frequencies / (np.sqrt(np.maximum(exact, np.finfo(float).tiny)) / (2.0 * np.pi)) - 1.0)
         sure = (bounds <= self.request.tolerance).all(axis=1)

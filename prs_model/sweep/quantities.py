@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 Block = dict[str, NDArray[Any]]
 """Arrays by variable, the pose axis first; NaN where a pose is unreachable or a quantity does not exist."""
 
-UNREACHABLE, INTERPOLATED, DENSE, COUNTED = range(4)
-"""Codes of `proof`: none; interpolated; all modes of the whole system; interpolated and counted on the whole system."""
+UNREACHABLE, INTERPOLATED, DENSE = range(3)
+"""Codes of `proof`: none; interpolated, and modes counted; the modes of the whole system."""
 
 Labels = Mapping[str, Sequence[int] | Sequence[str]]
 """What stands along each dimension, by its name."""

@@ -31,15 +31,13 @@ class Request:
     """What is asked of every pose. Raises PrsError or UnknownNameError for what cannot be meant.
 
     quantities: of QUANTITIES, kept in that order, frequency among them. tolerance: relative, of every frequency.
-    band: in which resonance peaks are sought [Hz]. exact_counts: test at every pose, on the whole system, that no mode
-    was missed; by default that is concluded from the nodes.
+    band: in which resonance peaks are sought [Hz].
     """
 
     n_modes: int = 6
     quantities: tuple[str, ...] = ("frequency",)
     tolerance: float = 1e-6
     band: tuple[float, float] | None = None
-    exact_counts: bool = False
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "quantities", _in_order(self.quantities))

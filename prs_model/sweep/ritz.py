@@ -20,11 +20,10 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import BoolArray, FloatArray
+from ..arrays import FloatArray, IntArray
 from ..synthesis.batch import Systems
 from . import kernels as plain
-from .frames import complements
-from .tensor import Tensor
+from .tensor import Interpolated
 
 _LACKING = 2.0  # times what the last quarter of the shapes adds
 
@@ -57,7 +56,7 @@ def leading_shapes(mass: FloatArray, shapes: FloatArray, count: int) -> FloatArr
 
 
 def ritz_matrices(basis: RitzBasis, systems: Systems) -> dict[str, FloatArray]:
-    """A (N, r, r) and Z at the level (N, r, r), packed."""
+    """A (N, r, r), packed."""
     momenta, r = systems.mass @ basis.shapes, basis.size
     inverse = np.empty((len(momenta), r, r))
     for i, (mass, stiffness, free) in enumerate(systems.pencils):
@@ -70,27 +69,14 @@ def ritz_matrices(basis: RitzBasis, systems: Systems) -> dict[str, FloatArray]:
     root = np.linalg.inv(np.linalg.cholesky(basis.shapes.T @ momenta))
     inverse = root @ inverse @ root.swapaxes(1, 2)
     rows, columns = np.tril_indices(r)
-    return {
-        "inverse": inverse[:, rows, columns],
-        "complement": complements(basis.shapes, basis.level, systems)[:, rows, columns],
-    }
+    return {"inverse": inverse[:, rows, columns]}
 
 
 @dataclass(frozen=True, eq=False)
-class RitzInterpolation(Tensor):
-    """A tensor of A and of Z. The error is that of mu, absolute [s^2/rad^2]."""
+class RitzInterpolation(Interpolated):
+    """A tensor of A. The error is that of mu, absolute [s^2/rad^2]."""
 
     basis: RitzBasis
-
-    @property
-    def level(self) -> float:
-        """Below which eigenvalues are counted [rad^2/s^2]."""
-        return self.basis.level
-
-    @property
-    def counted(self) -> FloatArray:
-        """The shapes (n, r) of Z."""
-        return self.basis.shapes
 
     @property
     def shift(self) -> float:
@@ -99,9 +85,9 @@ class RitzInterpolation(Tensor):
 
     def frequencies(
         self, values: FloatArray, count: int, kernels: Any = plain
-    ) -> tuple[FloatArray, FloatArray, BoolArray]:
+    ) -> tuple[FloatArray, FloatArray, IntArray]:
         """The lowest frequencies (m, count) [Hz] of interpolated values (e, m), bounds of their relative errors, and
-        whether as many Ritz values as eigenvalues lie below the level, so that none is missing (m,)."""
+        how many Ritz values lie below the level (m,)."""
         matrices = plain.unpacked(values[self.parts["inverse"]], self.basis.size)
         every, first = (
             np.linalg.eigvalsh(each) for each in (matrices, matrices[:, : self.basis.first, : self.basis.first])
@@ -109,7 +95,5 @@ class RitzInterpolation(Tensor):
         mu, less = every[:, : -count - 1 : -1], first[:, : -count - 1 : -1]
         eigenvalues = np.maximum(1.0 / mu + self.shift, np.finfo(float).tiny)
         off = (_LACKING * np.abs(mu - less) + self.error + self.asymmetry * mu) / mu**2
-        below = (every > 1.0 / (self.level - self.shift)).sum(axis=1)
-        packed = np.ascontiguousarray(values[self.parts["complement"]])
-        complete = np.asarray(kernels.negatives(packed, self.basis.size, self.slack) == below)
-        return np.sqrt(eigenvalues) / (2.0 * np.pi), off / (2.0 * eigenvalues), complete
+        below = (every > 1.0 / (self.basis.level - self.shift)).sum(axis=1)
+        return np.sqrt(eigenvalues) / (2.0 * np.pi), off / (2.0 * eigenvalues), below

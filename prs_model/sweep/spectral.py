@@ -139,7 +139,7 @@ class Box:
 
     def terms(self, tensor: FloatArray, negligible: float) -> Terms:
         """The interpolant without its smallest terms, of which no value anywhere has more than `negligible`."""
-        coefficients = self.coefficients(tensor).reshape(-1, tensor.shape[-1])
+        coefficients = self.coefficients(tensor).reshape(int(np.prod(self.shape)), -1)
         sizes = np.linalg.norm(coefficients, axis=1)
         order = np.argsort(sizes)
         kept = np.sort(order[np.cumsum(sizes[order]) > negligible])

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,43 +15,32 @@ from .poses import Poses
 from .spectral import Box, Terms, on_grid
 from .symmetry import Symmetry
 
+if TYPE_CHECKING:
+    from .counting import Counting
+
+Reader = Callable[[int, int], FloatArray]
+
 _POINTS = 512  # of a list, interpolated at once
-NEGLIGIBLE = 0.02  # of the error, what terms left out at the points of a list may add
 
 
 @dataclass(frozen=True, eq=False)
 class Tensor:
-    """Values at the nodes of a box (.., e), and what lies where among the e.
-
-    error: bound of the error of what eigenvalues are taken from, anywhere; slack: the same of what is counted from.
-    joints: those that come near a limit, whose values are interpolated too. symmetry: of the poses that stand for all.
-    """
+    """Values at the nodes of a box (.., e). negligible: what terms left out at the points of a list may add."""
 
     box: Box
     nodes: FloatArray
-    parts: Mapping[str, slice]
-    error: float
-    slack: float
-    joints: tuple[int, ...]
-    symmetry: Symmetry | None
+    negligible: float
 
-    @property
-    def asymmetry(self) -> float:
-        """What poses that stand for each other may differ by in log(lambda - shift)."""
-        return 0.0 if self.symmetry is None else self.symmetry.defect
-
-    def weights(self, poses: Poses) -> list[FloatArray]:
-        """Along each axis of the box those of a grid's values (m_k, n_k)."""
-        axes = (poses.axes[column] for column in self.box.columns)
-        return [axis.weights(values) for axis, values in zip(self.box.axes, axes, strict=True)]
-
-    def values(self, poses: Poses, start: int, stop: int, weights: Sequence[FloatArray] | None = None) -> FloatArray:
-        """All interpolated values (e, m) at poses start .. stop - 1, poses last. weights: of a grid, if known."""
+    def reader(self, poses: Poses) -> Reader:
+        """Interpolates at the poses start .. stop - 1: values (e, m), poses last."""
         if poses.points is not None:
-            points = poses.points[start:stop]
-            chunks = [self._terms.at(points[k : k + _POINTS]) for k in range(0, len(points), _POINTS)]
-            return np.ascontiguousarray(np.concatenate(chunks).T)
-        return _block(self._nodes_last, weights or self.weights(poses), start, stop)
+            points, terms = poses.points, self._terms
+            return lambda start, stop: np.ascontiguousarray(
+                np.concatenate([terms.at(points[k : min(k + _POINTS, stop)]) for k in range(start, stop, _POINTS)]).T
+            )
+        axes = (poses.axes[column] for column in self.box.columns)
+        weights = [axis.weights(values) for axis, values in zip(self.box.axes, axes, strict=True)]
+        return lambda start, stop: _block(self._nodes_last, weights, start, stop)
 
     @cached_property
     def _nodes_last(self) -> FloatArray:
@@ -58,7 +48,28 @@ class Tensor:
 
     @cached_property
     def _terms(self) -> Terms:
-        return self.box.terms(self.nodes, self.error * NEGLIGIBLE)
+        return self.box.terms(self.nodes, self.negligible)
+
+
+@dataclass(frozen=True, eq=False)
+class Interpolated(Tensor):
+    """A tensor that frequencies are taken from: what lies where among the e, and how far it may be off.
+
+    error: bound of the error of what eigenvalues are taken from, anywhere. joints: those that come near a limit, whose
+    values are interpolated too. symmetry: of the poses that stand for all. counting: of eigenvalues below a level, or
+    None where all there are are followed.
+    """
+
+    parts: Mapping[str, slice]
+    error: float
+    joints: tuple[int, ...]
+    symmetry: Symmetry | None
+    counting: Counting | None
+
+    @property
+    def asymmetry(self) -> float:
+        """What poses that stand for each other may differ by in log(lambda - shift)."""
+        return 0.0 if self.symmetry is None else self.symmetry.defect
 
 
 def _block(nodes: FloatArray, weights: Sequence[FloatArray], start: int, stop: int) -> FloatArray:

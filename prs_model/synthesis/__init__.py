@@ -5,4 +5,14 @@ from .batch import Systems, assemble_many
 from .dual import DualSystems, dual_assembly
 from .system import Coordinate, SpringMotion, System
 
-__all__ = ["Coordinate", "DualSystems", "SpringMotion", "System", "Systems", "assemble", "assemble_many", "dual_assembly", "wide_joints"]
+__all__ = [
+    "Coordinate",
+    "DualSystems",
+    "SpringMotion",
+    "System",
+    "Systems",
+    "assemble",
+    "assemble_many",
+    "dual_assembly",
+    "wide_joints",
+]

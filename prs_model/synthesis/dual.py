@@ -68,8 +68,13 @@ class DualSystems:
             S[:, alone[:, None], rows] = -_transposed(reading[..., held])
         return (S + _transposed(S)) / 2.0, below
 
+    @property
+    def rows(self) -> tuple[str, ...]:
+        """Of each row of S its joint, or whose coordinate it is."""
+        return (*self.joints, *(f"{name}'s" for name, (_, held) in self._coordinates.items() for _ in held))
+
     @cached_property
-    def _coordinates(self) -> dict[str, tuple[IntArray, IntArray]]:
+    def _coordinates(self) -> Mapping[str, tuple[IntArray, IntArray]]:
         """Of each body those with mass or stiffness, and those without that move a joint."""
         found = {}
         for name, (_, reading) in self.bodies.items():
