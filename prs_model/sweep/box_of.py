@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -69,13 +70,21 @@ class Shape:
         return pose
 
     def line(self, k: int, count: int) -> tuple[Axis, FloatArray]:
-        """Nodes along one coordinate and their poses (count, d), the others at the upper ends of their ranges."""
+        """Nodes along one coordinate, and their poses (c, count, d) on lines through c corners of the others' ranges.
+
+        Of three coordinates these are the ends of what is neither periodic nor a radius, else the upper ends only.
+        """
         axis = self._axis(k, count)
-        corner = self.fixed.copy()
-        corner[list(self.columns)] = self.bounds[:, 1]
-        poses = np.tile(corner, (axis.count, 1))
-        poses[:, self.columns[k]] = axis.nodes
-        return axis, poses
+        others = [i for i in range(len(self.columns)) if i != k]
+        both = [len(others) > 1 and not self.periodic[i] and not self._is_radius(i) for i in others]
+        ends = product(*(self.bounds[i] if each else self.bounds[i, 1:] for i, each in zip(others, both, strict=True)))
+        lines = []
+        for corner in ends:
+            poses = np.tile(self.fixed, (axis.count, 1))
+            poses[:, [self.columns[i] for i in others]] = corner
+            poses[:, self.columns[k]] = axis.nodes
+            lines.append(poses)
+        return axis, np.array(lines)
 
 
 def shape_of(kinematics: Kinematics, poses: Poses) -> Shape:

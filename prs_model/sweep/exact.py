@@ -12,6 +12,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..synthesis import DualSystems, Systems, assemble_many, dual_assembly
 from .low_modes import LowModes, low_modes
+from .threads import cores
 
 if TYPE_CHECKING:
     from ..kinematics import Configurations
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
 CHUNK = 48  # configurations assembled at once: 40 MB at 200 coordinates
 
-_SMALLEST, _SHARES = 4, 4  # of a chunk, and chunks of a few poses, so that all cores have some
+_SMALLEST = 4  # of a chunk
 
 _T = TypeVar("_T")
 
@@ -71,7 +72,7 @@ class Solver:
         found = self.machine.kinematics.solve_batch(poses)
         if np.isnan(found.q).any():
             raise found.errors[int(np.flatnonzero(np.isnan(found.q).any(axis=1))[0])]
-        size = min(CHUNK, max(_SMALLEST, -(-len(poses) // _SHARES)))
+        size = min(CHUNK, max(_SMALLEST, -(-len(poses) // cores())))
         return [part(found, slice(start, start + size)) for start in range(0, len(poses), size)]
 
 

@@ -14,6 +14,7 @@ from ..errors import PrsError
 from ..linear_algebra import positive_definite_pencil
 from .approaches import EXTRA, Approach, NotSmoothError, following, ritz_on_inverse
 from .box_of import MOST_COORDINATES, Shape, shape_of
+from .convergence import Need, need
 from .counting import Counting, counting
 from .exact import Solved, Solver
 from .in_frame import is_possible, reaches
@@ -34,12 +35,13 @@ Found = Interpolation | RitzInterpolation
 _FEWEST = 400  # poses that are worth an interpolation
 _LINE = (17, 33, 65, 129)  # nodes of the lines on which convergence is tried
 _RITZ_SIZES = (24, 36, 54, 80)  # shapes of a basis
+_BEYOND = 1.5  # times as many nodes as a line has, which may be reckoned from it
 _COARSE = 9  # nodes along each axis, at which joints are held against their limits
 _WORTH_RITZ = 10_000  # poses that are worth a basis
 _SCATTERED = 48  # poses whose shapes it is made of, beside those on the lines
 _SHARE = 1.4  # of the error allowed over the square of the number of axes, for what a line leaves out
-_UNSEEN = 8  # of the last terms along a line; every third or fourth order may be all there is
-_ENLARGED = 1.2  # more nodes along an axis whose tail is too long
+_AMPLE = 2.0  # times what the error is too large by, to be made up for with more nodes
+_TAKES_PART = 0.2  # of the longest tail: an axis whose own is shorter needs no more
 _ATTEMPTS = 4
 _HELD_OUT = 24
 _ROOM = 0.1  # of the range of a joint's values at the nodes, by which it may go further in between
@@ -126,7 +128,8 @@ class _Planner:
         raise NotSmoothError(reason)
 
     def _line(self, k: int, count: int) -> list[Solved]:
-        return list(self.solver.each(self.shape.line(k, count)[1], _kept, self.pool))
+        poses = self.shape.line(k, count)[1]
+        return list(self.solver.each(poses.reshape(-1, poses.shape[-1]), _kept, self.pool))
 
     def _scattered(self) -> FloatArray:
         """Some of the poses (m, d) [m, rad]."""
@@ -139,7 +142,8 @@ class _Planner:
         planner = replace(self, solver=replace(self.solver, count=approach.count))
         taken = 0.0 if self.symmetry is None else self.symmetry.defect / (2.0 * self.request.tolerance)
         most = approach.wanted * (1.0 - taken)
-        counts = tuple(planner._count(approach, k, line, most) for k, line in enumerate(lines))
+        needs = [planner._need(approach, k, line, most) for k, line in enumerate(lines)]
+        counts = tuple(each.count for each in needs)
         for _ in range(_ATTEMPTS):
             box = self.shape.box(counts)
             if len(box.solved) > self.poses.size / 2:
@@ -150,22 +154,24 @@ class _Planner:
                 if worst is not None:
                     counted = replace(found, counting=planner._counting(approach))
                     return counted, self._in_words(counted, approach, share, worst)
-                tails = tuple(tail + found.error for tail in tails)
-            counts = tuple(_more(count, tail, max(tails)) for count, tail in zip(box.shape, tails, strict=True))
+            excess = _AMPLE * max(found.error / most, 1.0)
+            counts = tuple(
+                each.more(count, excess) if tail > _TAKES_PART * max(tails) else count
+                for each, count, tail in zip(needs, box.shape, tails, strict=True)
+            )
         raise NotSmoothError(f"{len(box.solved)} nodes are not enough")
 
-    def _count(self, approach: Approach, k: int, solved: list[Solved], most: float) -> int:
-        """Nodes along coordinate k for which the last terms along a line have a small share of the error allowed."""
+    def _need(self, approach: Approach, k: int, solved: list[Solved], most: float) -> Need:
+        """Nodes along coordinate k for which the last terms along lines have a small share of the error allowed."""
         most *= _SHARE / len(self.shape.columns) ** 2
+        beyond = _BEYOND if len(self.shape.columns) < MOST_COORDINATES else 1.0  # a box of nodes outweighs many lines
         for count in _LINE:
-            axis, _ = self.shape.line(k, count)
+            axis, poses = self.shape.line(k, count)
             if count > _LINE[0]:
                 solved = self._line(k, count)
             matrices = np.concatenate([as_frobenius(approach.on_line(each)) for each in solved])
-            sizes = np.linalg.norm(axis.transform @ matrices, axis=1)
-            rest = np.cumsum(sizes[::-1])[::-1]
-            if rest[-_UNSEEN] < most:
-                return int(np.flatnonzero(rest < most)[0]) + 2
+            if found := need(axis, matrices.reshape(*poses.shape[:2], -1), most, beyond):
+                return found
         raise NotSmoothError(f"{self.poses.names[self.shape.columns[k]]}: {axis.count} nodes along it are not enough")
 
     def _interpolation(self, approach: Approach, box: Box) -> tuple[Found, tuple[float, ...]]:
@@ -268,10 +274,6 @@ def _logarithms(solver: Solver, request: Request, pool: ThreadPoolExecutor) -> L
 
 def _kept(solved: Solved) -> Solved:
     return solved
-
-
-def _more(count: int, tail: float, largest: float) -> int:
-    return int(np.ceil(count * _ENLARGED)) if tail > 0.2 * largest else count
 
 
 def _modes_needed(home: System, request: Request) -> int:

@@ -102,20 +102,25 @@ def symmetry_of(shape: Shape, likes: set[int], tolerance: float, logarithms: Log
         return None
     column, period = turning[0], _TURN / max(likes)
     trials = _trials(shape)
-    exact = logarithms(trials)
-
-    def differs(images: FloatArray, count: int = _TRIALS) -> float:
-        trial = trials[:count].copy()
-        trial[:, column] = images[:count]
-        return _SAFETY * float(np.abs(logarithms(trial) - exact[:count]).max())
-
     values, most = trials[:, column], 2.0 * tolerance * _WORTH
-    defect = differs(values + period)
+
+    def at(images: FloatArray, poses: FloatArray = trials) -> FloatArray:
+        moved = poses.copy()
+        moved[:, column] = images
+        return logarithms(moved)
+
+    def differ(some: FloatArray, others: FloatArray) -> float:
+        return _SAFETY * float(np.abs(some - others).max())
+
+    exact, turned = np.split(at(np.concatenate([values, values + period]), np.tile(trials, (2, 1))), 2)
+    defect = differ(turned, exact)
     if defect > most:
         return None
     start = float(shape.bounds[shape.columns.index(column), 0])
-    for plane in period / _PLANES * np.arange(_PLANES) / 2.0:
-        if differs(2.0 * plane - values, 1) < most and (both := defect + differs(2.0 * plane - values)) < most:
+    planes = period / _PLANES * np.arange(_PLANES) / 2.0
+    reflected = at(2.0 * planes - values[0], np.tile(trials[:1], (_PLANES, 1)))
+    for plane in (plane for plane, one in zip(planes, reflected, strict=True) if differ(one, exact[0]) < most):
+        if (both := defect + differ(at(2.0 * plane - values), exact)) < most:
             return Symmetry(column, period, float(plane), start, both)
     return Symmetry(column, period, None, start, defect)
 

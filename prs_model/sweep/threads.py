@@ -11,6 +11,11 @@ from threading import Lock
 _is_limited = Lock()
 
 
+def cores() -> int:
+    """How many this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
 @contextmanager
 def workers(threads: int | None = None) -> Iterator[ThreadPoolExecutor]:
     """Threads on all cores this process may use, each with linear algebra of one thread.
@@ -18,8 +23,7 @@ def workers(threads: int | None = None) -> Iterator[ThreadPoolExecutor]:
     That limit is one of the whole process. Of several sweeps at once the first sets it and lifts it again when it ends;
     those that last longer go on with more threads than there are cores: slower, with the same results.
     """
-    available = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
-    with _single_threaded(), ThreadPoolExecutor(threads or available) as pool:
+    with _single_threaded(), ThreadPoolExecutor(threads or cores()) as pool:
         try:
             yield pool
         except BaseException:  # an interruption among them: what has not begun is dropped

@@ -67,12 +67,20 @@ def test_a_length_is_never_periodic(table: prs.Machine) -> None:
     assert found.bounds.tolist() == [[-0.5, 0.5], [-0.5, 0.6]]
 
 
-def test_a_line_of_nodes_runs_along_one_coordinate(table: prs.Machine) -> None:
+def test_lines_of_nodes_run_along_one_coordinate(table: prs.Machine) -> None:
     found = shape(table, x=np.linspace(-0.5, 0.5, 40), y=np.linspace(-0.5, 0.6, 40))
     axis, poses = found.line(0, 9)
-    np.testing.assert_array_equal(poses[:, 0], axis.nodes)
-    assert (poses[:, 1] == 0.6).all()
-    assert (poses[:, 2] == 0.0).all()
+    assert poses.shape == (1, 9, 3)
+    np.testing.assert_array_equal(poses[0, :, 0], axis.nodes)
+    assert (poses[0, :, 1] == 0.6).all()
+    assert (poses[0, :, 2] == 0.0).all()
+
+
+def test_of_three_coordinates_lines_run_through_both_ends_of_the_others(table: prs.Machine) -> None:
+    found = shape(table, x=np.linspace(-0.5, 0.5, 9), y=np.linspace(-0.5, 0.6, 9), phi=np.linspace(0.0, 1.0, 9))
+    _, poses = found.line(0, 5)
+    corners = [(-0.5, 0.0), (-0.5, 1.0), (0.6, 0.0), (0.6, 1.0)]
+    assert sorted({(float(line[0, 1]), float(line[0, 2])) for line in poses}) == corners
 
 
 def test_a_list_has_no_given_values(table: prs.Machine) -> None:
