@@ -5,17 +5,18 @@ smooth in the pose as the joints' values are: a mode cannot hide between the nod
 between those of the modes themselves. At each pose the eigenvalues are counted by LDL^T of S + d, where d is more than
 the interpolant may be off, so that the count is never too small.
 
-Joint after joint, the block of S that belongs to it is eliminated at the nodes, if it is nowhere singular: with
-coefficients c_k of terms t_k, none of which exceeds one,
+Row after row, S is eliminated at the nodes as long as the pivot is nowhere zero: with coefficients c_k of terms t_k,
+none of which exceeds one,
 
-    S_jj(x) = c_0 + sum c_k t_k(x),   sum || |c_0|^-1/2 c_k |c_0|^-1/2 || < 1,
+    pivot(x) = c_0 + sum c_k t_k(x),   sum |c_k| < |c_0|,
 
-it has as many negative eigenvalues everywhere as c_0. What remains of S is interpolated and counted at every pose.
+the pivot has the sign of c_0 at every pose. Often no row is left, and the number is the same all over the box. What
+is left otherwise is interpolated and counted at every pose.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Any
@@ -34,14 +35,17 @@ from .poses import Poses
 from .spectral import Box
 from .tensor import Tensor
 
-_FEWEST = 7  # nodes along an axis, to begin with
+Counter = Callable[[int, int], IntArray]
+
+_FEWEST = {"chebyshev": 6, "fourier": 17}  # nodes along an axis, to begin with
 _ENLARGED = 1.4
 _MOST = 2500  # nodes
-_SLACK = 0.02  # allowed, of what remains of S, whose eigenvalues are about 1 and -1
+_SLACK = 0.2  # allowed, of what remains of S, whose eigenvalues are about 1 and -1
 _SHARPEST = 1e-6  # of the same, below which it is not made smaller
 _ROUNDING = 1e-7
 _FLOOR = 1e-9  # of the largest eigenvalue of S: those of redundant rigid joints are smaller
-_CHANGES = 0.9  # of a block that is eliminated, at most
+_CHANGES = 0.7  # of a pivot that is eliminated, at most: well away from zero, it leaves smooth what remains
+_LAST, _LEFT_OUT = 2, 3.0  # terms along an axis that count so many times, for those left out
 _AWAY = 1.2  # factor by which eigenvalues of a part that changes keep away from the level
 _HELD_OUT = 8
 _SURE = 0.7  # share of the poses held out
@@ -51,8 +55,8 @@ _SURE = 0.7  # share of the poses held out
 class Counting(Tensor):
     """A tensor of what remains of S, packed, in axes in which it is about 1 and -1; `size` is the number of rows.
 
-    level: below which eigenvalues are counted [rad^2/s^2]. constant: those of the bodies alone less the negative ones
-    that were eliminated. slack: more than S is off, anywhere.
+    level: below which eigenvalues are counted [rad^2/s^2]. constant: those of the bodies alone, less the negative
+    pivots. slack: more than what remains is off, anywhere.
     """
 
     level: float
@@ -60,24 +64,32 @@ class Counting(Tensor):
     size: int
     slack: float
 
-    def at_most(self, values: FloatArray, kernels: Any = plain) -> IntArray:
-        """How many eigenvalues lie below the level at most (m,), by interpolated values (e, m); -1 where in doubt."""
-        negative = kernels.negatives(values, self.size, self.slack)
-        return np.where(negative < 0, -1, self.constant - negative)
+    def at_most(self, poses: Poses, kernels: Any = plain) -> Counter:
+        """How many eigenvalues lie below the level, at most, at the poses start .. stop - 1; -1 where in doubt."""
+        if not self.size:
+            return lambda start, stop: np.full(stop - start, self.constant)
+        values = self.reader(poses)
+
+        def counts(start: int, stop: int) -> IntArray:
+            negative = kernels.negatives(values(start, stop), self.size, self.slack)
+            return np.where(negative < 0, -1, self.constant - negative)
+
+        return counts
 
 
 @dataclass(frozen=True, eq=False)
 class _Rest:
-    """What remains of S: of rows `kept`, after those of each joint in `eliminated` in turn; `turned` to its axes."""
+    """What remains of S: the rows `kept` after those `eliminated` in turn, turned by T (r, r) to its axes."""
 
-    eliminated: tuple[IntArray, ...]
+    eliminated: tuple[int, ...]
     kept: IntArray
     turned: FloatArray
 
     def packed(self, S: FloatArray) -> FloatArray:
         """(N, r (r + 1) / 2), of S (N, c, c)."""
-        for rows in self.eliminated:
-            S = _without(S, rows)
+        S = S.copy()
+        for row in self.eliminated:
+            _eliminate(S, row)
         rows, columns = np.tril_indices(len(self.kept))
         return np.asarray((self.turned.T @ S[:, self.kept[:, None], self.kept] @ self.turned)[:, rows, columns])
 
@@ -87,7 +99,7 @@ def counting(solver: Solver, shape: Shape, poses: Poses, level: float, pool: Thr
 
     Raises NotSmoothError where a part alone has an eigenvalue at the level, or too many nodes would be needed.
     """
-    counts: tuple[int, ...] = (_FEWEST,) * len(shape.columns)
+    counts = tuple(_FEWEST["fourier" if turns else "chebyshev"] for turns in shape.periodic)
     wanted, best = _SLACK, None
     while len((box := shape.box(counts)).solved) <= min(_MOST, poses.size / 2):
         found, rest, tails = _on(box, solver, level, pool)
@@ -108,32 +120,29 @@ def counting(solver: Solver, shape: Shape, poses: Poses, level: float, pool: Thr
 
 def _on(box: Box, solver: Solver, level: float, pool: ThreadPoolExecutor) -> tuple[Counting, _Rest, tuple[float, ...]]:
     """With the nodes of a box; what remains of S; and its error that is due to each axis."""
-    S, below, owners = _dual(solver, box.poses(), level, pool)
-    rest, negative = _eliminated(box, S, owners)
+    S, below = _dual(solver, box.poses(), level, pool)
+    rest, negative = _eliminated(box, S)
     nodes = box.unfold(rest.packed(S))
     tails = box.tail(as_frobenius(nodes))
     slack = 2.0 * sum(tails) + _ROUNDING
-    return Counting(box, nodes, 0.1 * slack, level, below - negative, len(rest.kept), slack), rest, tails
+    return Counting(box, nodes, 0.1 * slack, level, int(below[0]) - negative, len(rest.kept), slack), rest, tails
 
 
-def _dual(
-    solver: Solver, poses: FloatArray, level: float, pool: ThreadPoolExecutor
-) -> tuple[FloatArray, int, tuple[str, ...]]:
-    """S (N, c, c) at poses (N, d), how many eigenvalues the bodies alone have below the level, and whose the rows are.
+def _dual(solver: Solver, poses: FloatArray, level: float, pool: ThreadPoolExecutor) -> tuple[FloatArray, IntArray]:
+    """S (N, c, c) at poses (N, d), and how many eigenvalues the bodies alone have below the level (N,).
 
     Raises NotSmoothError where that number changes, or might change in between.
     """
 
-    def at_level(dual: DualSystems) -> tuple[FloatArray, IntArray, tuple[str, ...]]:
+    def at_level(dual: DualSystems) -> tuple[FloatArray, IntArray]:
         if not _keep_away(dual.elements.values(), level):
             raise NotSmoothError("a part alone has a mode near the level")
-        return *dual.at(level), dual.rows
+        return dual.at(level)
 
-    chunks = list(solver.each_dual(poses, at_level, pool))
-    below = np.concatenate([chunk[1] for chunk in chunks])
+    S, below = (np.concatenate(each) for each in zip(*solver.each_dual(poses, at_level, pool), strict=True))
     if np.ptp(below):
         raise NotSmoothError("a part alone has a mode that crosses the level")
-    return np.concatenate([chunk[0] for chunk in chunks]), int(below[0]), chunks[0][2]
+    return S, below
 
 
 def _keep_away(elements: Iterable[Elements], level: float) -> bool:
@@ -144,82 +153,78 @@ def _keep_away(elements: Iterable[Elements], level: float) -> bool:
     return all(np.array_equal(below.sum(axis=1), above.sum(axis=1)) for below, above in counts)
 
 
-def _eliminated(box: Box, S: FloatArray, owners: Sequence[str]) -> tuple[_Rest, int]:
-    """What remains of S (N, c, c), and how many negative eigenvalues were eliminated. owners: of the rows."""
-    names, negative = np.array(owners), 0
-    left = sorted(dict.fromkeys(owners), key=lambda name: -int(np.sum(names == name)))
-    eliminated: list[IntArray] = []
-
-    def hardly_changes(name: str) -> bool:
-        own = np.flatnonzero(names == name)
-        return _changes(box, S[:, own[:, None], own]) < _CHANGES
-
-    while name := next(filter(hardly_changes, left), None):
-        rows = np.flatnonzero(names == name)
-        negative += int((np.linalg.eigvalsh(S[0][np.ix_(rows, rows)]) < 0.0).sum())
-        S = _without(S, rows)
-        eliminated.append(rows)
-        left.remove(name)
-    kept = np.flatnonzero(np.isin(names, left))
-    mean = _coefficients(box, S[:, kept[:, None], kept])[(0,) * len(box.axes)]
-    return _Rest(tuple(eliminated), kept, _to_ones(mean)[0]), negative
+def _eliminated(box: Box, S: FloatArray) -> tuple[_Rest, int]:
+    """What remains of S (N, c, c), and how many of the pivots were negative. The steadiest pivot comes first."""
+    S, left = S.copy(), np.arange(S.shape[1])
+    eliminated: list[int] = []
+    negative = 0
+    while len(left):
+        changes = _changes(box, S[:, left, left])
+        steadiest = int(np.argmin(changes))
+        if changes[steadiest] >= _CHANGES:
+            break
+        row = int(left[steadiest])
+        negative += int(S[0, row, row] < 0.0)
+        _eliminate(S, row)
+        eliminated.append(row)
+        left = np.delete(left, steadiest)
+    mean = np.mean(S[:, left[:, None], left], axis=0)
+    return _Rest(tuple(eliminated), left, _to_ones(mean)), negative
 
 
-def _without(S: FloatArray, rows: IntArray) -> FloatArray:
-    """S (N, c, c) after some rows are eliminated: the Schur complement in those coupled to them; theirs are zero."""
-    S = S.copy()
-    coupled = np.setdiff1d(np.flatnonzero(np.any(S[:, rows], axis=(0, 1))), rows)
-    beside = S[:, rows[:, None], coupled]
-    S[:, coupled[:, None], coupled] -= beside.swapaxes(1, 2) @ np.linalg.solve(S[:, rows[:, None], rows], beside)
-    S[:, rows] = 0.0
-    S[:, :, rows] = 0.0
-    return S
+def _eliminate(S: FloatArray, row: int) -> None:
+    """One row of S (N, c, c), in place: the Schur complement in those coupled to it, and zeros in its own."""
+    beside, pivot = S[:, row].copy(), S[:, row, row].copy()
+    beside[:, row] = 0.0
+    coupled = np.flatnonzero(np.any(beside, axis=0))
+    each = beside[:, coupled]
+    S[:, coupled[:, None], coupled] -= each[:, :, None] * (each / pivot[:, None])[:, None, :]
+    S[:, row] = 0.0
+    S[:, :, row] = 0.0
 
 
-def _changes(box: Box, blocks: FloatArray) -> float:
-    """By how much blocks (N, b, b) at the nodes, seen as 1 and -1, change over the box; infinite for singular ones."""
-    coefficients = _coefficients(box, blocks)
-    turned, singular = _to_ones(coefficients[(0,) * len(box.axes)])
-    if singular:
-        return float("inf")
-    sizes = np.abs(np.linalg.eigvalsh(turned.T @ coefficients @ turned)).max(axis=-1)
-    sizes[(0,) * len(box.axes)] = 0.0
-    smooth = tuple(k for k, axis in enumerate(box.axes) if axis.given is None)
-    return float(sizes.sum(axis=smooth).max())
+def _changes(box: Box, values: FloatArray) -> FloatArray:
+    """How much each of k values (N, k) at the nodes changes over the box, for its mean: below 1 it is nowhere zero.
 
-
-def _coefficients(box: Box, blocks: FloatArray) -> FloatArray:
-    """(.., b, b) of the terms along the axes, of blocks (N, b, b); the first is what does not change.
-
-    Of an axis of given nodes they are differences from the first node.
+    The last terms count for those that are left out. Infinite where the mean has not one sign at all given nodes.
     """
-    found = box.coefficients(box.unfold(blocks.reshape(len(blocks), -1)))
-    for k, axis in enumerate(box.axes):
-        if axis.given is not None:
-            found = np.concatenate([np.take(found, [0], k), np.diff(found, axis=k).cumsum(axis=k)], axis=k)
-    return found.reshape(*found.shape[:-1], *blocks.shape[1:])
+    sizes = box.coefficients(box.unfold(values))
+    smooth = tuple(k for k, axis in enumerate(box.axes) if axis.given is None)
+    first = tuple(0 if k in smooth else slice(None) for k in range(len(box.axes)))
+    mean = sizes[first].reshape(-1, values.shape[1])
+    sizes = np.abs(sizes)
+    sizes[first] = 0.0
+    for k in smooth:
+        last = tuple(slice(-_LAST, None) if k == i else slice(None) for i in range(len(box.axes)))
+        sizes[last] *= _LEFT_OUT
+    changes = sizes.sum(axis=smooth).reshape(-1, values.shape[1])
+    one_sign = np.abs(np.sign(mean).sum(axis=0)) == len(mean)
+    return np.where(one_sign, (changes / np.where(one_sign, np.abs(mean), 1.0)).max(axis=0), np.inf)
 
 
-def _to_ones(matrix: FloatArray) -> tuple[FloatArray, bool]:
-    """T (b, b) with eigenvalues 1 and -1 of T^T A T, near zero for a singular A; and whether it is singular."""
+def _to_ones(matrix: FloatArray) -> FloatArray:
+    """T (b, b) with eigenvalues 1 and -1 of T^T A T, or near zero where A is singular."""
     scale = 1.0 / np.sqrt(np.maximum(np.linalg.norm(matrix, axis=1), np.finfo(float).tiny))
     values, vectors = np.linalg.eigh(matrix * np.outer(scale, scale))
-    least = _FLOOR * np.abs(values).max(initial=0.0)
-    sizes = np.maximum(np.abs(values), least)
-    return scale[:, None] * vectors / np.sqrt(sizes), bool(np.any(np.abs(values) <= least))
+    sizes = np.maximum(np.abs(values), _FLOOR * np.abs(values).max(initial=0.0))
+    return np.asarray(scale[:, None] * vectors / np.sqrt(sizes))
 
 
 def _held_out(
     found: Counting, rest: _Rest, solver: Solver, poses: Poses, pool: ThreadPoolExecutor
 ) -> tuple[bool, bool]:
-    """Of some of the poses: whether the interpolant is within its slack, and whether this is small enough for the
-    count to be that without it at most of them."""
+    """Of some of the poses: whether what remains of S is within the slack and the count not too small, and whether this
+    is exact at most of them."""
     numbers = np.random.default_rng(5).choice(poses.size, min(_HELD_OUT, poses.size), replace=False)
     some = poses.at(np.sort(numbers))
     some = some[solver.machine.kinematics.solve_batch(some).reachable]
     if not len(some):
         return True, True
-    exact = rest.packed(_dual(solver, some, found.level, pool)[0]).T
-    errors = as_frobenius((exact - found.reader(Poses(poses.names, (), some))(0, len(some))).T)
-    counts = (plain.negatives(exact, found.size, slack) for slack in (found.slack, _ROUNDING))
-    return bool(np.linalg.norm(errors, axis=1).max() <= found.slack), bool(np.mean(np.equal(*counts)) > _SURE)
+    S, below = _dual(solver, some, found.level, pool)
+    listed = Poses(poses.names, (), some)
+    errors = as_frobenius(rest.packed(S) - found.reader(listed)(0, len(some)).T)
+    scale = 1.0 / np.sqrt(np.abs(S).max(axis=1))
+    spectra = np.linalg.eigvalsh(S * scale[:, :, None] * scale[:, None, :])
+    exact, most = below - (spectra < -_ROUNDING).sum(axis=1), found.at_most(listed)(0, len(some))
+    holds = np.all(np.linalg.norm(errors, axis=1) <= found.slack) and np.all((most >= exact) | (most < 0))
+    return bool(holds), bool(np.mean(most == exact) > _SURE)

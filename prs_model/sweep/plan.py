@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from . import kernels as plain
+from .counting import Counter
 from .direct import solved_directly
 from .in_frame import quantities_in_frame
 from .interpolation import Interpolation
@@ -82,16 +83,16 @@ class Plan:
         return self.interpolation.reader(self._distinct)
 
     @cached_property
-    def _counted(self) -> Reader | None:
+    def _counted(self) -> Counter | None:
         counting = None if self.interpolation is None else self.interpolation.counting
-        return None if counting is None else counting.reader(self._distinct)
+        return None if counting is None else counting.at_most(self._distinct, self.kernels)
 
     def _complete(self, below: IntArray, first: int) -> BoolArray:
         """Whether none is missing of the modes asked for at the poses from `first` on, `below` (m,) of which were found
         below the level of counting."""
-        if self._counted is None or self.interpolation is None or self.interpolation.counting is None:
+        if self._counted is None:
             return np.ones(len(below), dtype=bool)
-        most = self.interpolation.counting.at_most(self._counted(first, first + len(below)), self.kernels)
+        most = self._counted(first, first + len(below))
         return np.asarray((most == below) & (below >= self.request.n_modes))
 
     def to_arrays(self) -> Arrays:
