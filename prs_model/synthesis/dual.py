@@ -15,9 +15,10 @@ Coordinates that have neither mass nor stiffness in their body are unknowns too:
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -34,17 +35,24 @@ from .batch import elements_in
 class DualSystems:
     """A machine in N configurations, joint wrenches phi (c,) as unknowns, SI.
 
-    joints: that which transmits each of the c wrenches. compliance (N, c, c). bodies: of each body the wrenches (k,)
-    that act on it and their B (N, k, n), or (1, k, n) where it is the same in all.
+    joints: that which transmits each of the c wrenches. compliances: of each spring its wrenches (m,) and C (N, m, m),
+    or (1, m, m) where it is the same in all. bodies: of each body the wrenches (k,) that act on it and their
+    B (N, k, n), or (1, k, n).
     """
 
+    count: int
     joints: tuple[str, ...]
-    compliance: FloatArray
+    compliances: tuple[tuple[IntArray, FloatArray], ...]
     bodies: Mapping[str, tuple[IntArray, FloatArray]]
     elements: Mapping[str, Elements]
 
     def __len__(self) -> int:
-        return len(self.compliance)
+        return self.count
+
+    @property
+    def size(self) -> int:
+        """Number of rows of S: wrenches, and coordinates that only joints hold."""
+        return len(self.joints) + sum(len(held) for _, held in self.coordinates.values())
 
     def at(self, shift: float) -> tuple[FloatArray, IntArray]:
         """S (N, c + e, c + e) with e coordinates that only joints hold, at a shift s [rad^2/s^2]; and numbers (N,) to
@@ -52,31 +60,49 @@ class DualSystems:
 
         Raises numpy.linalg.LinAlgError where the shift is an eigenvalue of a body alone.
         """
-        count, c = len(self), len(self.joints)
-        size = c + sum(len(held) for _, held in self._coordinates.values())
-        S, below = np.zeros((count, size, size)), np.full(count, size - c)
-        S[:, :c, :c] = self.compliance
-        place = c
+        S = np.zeros((self.count, self.size, self.size))
+        below = np.full(self.count, self.size - len(self.joints))
+        for rows, columns, values in self.entries():
+            S[:, rows, columns] = values
+            S[:, columns, rows] = values
         for name, (rows, reading) in self.bodies.items():
-            element, (some, held) = self.elements[name], self._coordinates[name]
-            pencil = (element.stiffness - shift * element.mass)[:, some[:, None], some]
-            below = below + (np.linalg.eigvalsh(pencil) < 0.0).sum(axis=1)
-            moved = reading[..., some]
-            S[:, rows[:, None], rows] += moved @ np.linalg.solve(pencil, _transposed(moved))
-            alone = np.arange(place, place := place + len(held))
-            S[:, rows[:, None], alone] = -reading[..., held]
-            S[:, alone[:, None], rows] = -_transposed(reading[..., held])
-        return (S + _transposed(S)) / 2.0, below
+            root, pivots = self.decoupled(name, shift)
+            below = below + (pivots < 0.0).sum(axis=1)
+            moved = reading[..., self.coordinates[name][0]] @ root
+            _add(S, rows, (moved / pivots[:, None]) @ _transposed(moved))
+        return S, below
 
-    @property
-    def rows(self) -> tuple[str, ...]:
-        """Of each row of S its joint, or whose coordinate it is."""
-        return (*self.joints, *(f"{name}'s" for name, (_, held) in self._coordinates.items() for _ in held))
+    def entries(self) -> Iterator[tuple[IntArray, IntArray, FloatArray]]:
+        """What S holds at any shift, below its diagonal and on it: rows (m,), columns (m,), values (N or 1, m)."""
+        for wrenches, compliance in self.compliances:
+            i, j = np.tril_indices(len(wrenches))
+            yield wrenches[i], wrenches[j], compliance[:, i, j]
+        place = len(self.joints)
+        for name, (rows, reading) in self.bodies.items():
+            held = self.coordinates[name][1]
+            alone = np.arange(place, place := place + len(held))
+            values = -_transposed(reading[..., held]).reshape(len(reading), -1)
+            yield np.repeat(alone, len(rows)), np.tile(rows, len(held)), values
+
+    def decoupled(self, name: str, shift: float) -> tuple[FloatArray, FloatArray]:
+        """X (N, n', n') and d (N, n') of a body with X^T (K_0 - s M) X = diag(d), on the coordinates that have mass or
+        stiffness; N is 1 where its matrices are the same in all configurations.
+
+        Raises numpy.linalg.LinAlgError where the shift is an eigenvalue of the body alone.
+        """
+        element, some = self.elements[name], self.coordinates[name][0]
+        mass, stiffness = (each[:, some[:, None], some] for each in (element.mass, element.stiffness))
+        sizes = np.diagonal(stiffness, axis1=1, axis2=2) + abs(shift) * np.diagonal(mass, axis1=1, axis2=2)
+        scale = 1.0 / np.sqrt(sizes)
+        pivots, turn = np.linalg.eigh((stiffness - shift * mass) * scale[:, :, None] * scale[:, None])
+        if np.any(pivots == 0.0):
+            raise np.linalg.LinAlgError(f"{name}: the shift is one of its eigenvalues")
+        return scale[:, :, None] * turn, pivots
 
     @cached_property
-    def _coordinates(self) -> Mapping[str, tuple[IntArray, IntArray]]:
+    def coordinates(self) -> dict[str, tuple[IntArray, IntArray]]:
         """Of each body those with mass or stiffness, and those without that move a joint."""
-        found = {}
+        found: dict[str, tuple[IntArray, IntArray]] = {}
         for name, (_, reading) in self.bodies.items():
             element = self.elements[name]
             own = np.any(element.mass, axis=(0, 1)) | np.any(element.stiffness, axis=(0, 1))
@@ -98,18 +124,19 @@ def dual_assembly(
     ends = ends_of(description, elements, configurations)
     springs = [each for each in springs_of(joints, configurations) if each.law.wrenches.shape[-1]]
     stops = np.cumsum([each.law.wrenches.shape[-1] for each in springs]).tolist()
-    compliance = np.zeros((len(configurations), stops[-1], stops[-1]))
+    compliances = []
     names = {block.start: name for name, block in ends.blocks.items()}
     on: dict[str, list[tuple[IntArray, FloatArray]]] = {name: [] for name in elements}
     for spring, stop in zip(springs, stops, strict=True):
         rows = np.arange(stop - spring.law.wrenches.shape[-1], stop)
-        compliance[:, rows[:, None], rows] = spring.law.compliance
+        compliances.append((rows, np.atleast_3d(spring.law.compliance.T).T))
         relative = ends.relative_displacement(spring)
         for block, motion in zip(relative.blocks, relative.motions, strict=True):
             on[names[block.start]].append((rows, _transposed(spring.law.wrenches) @ motion))
     return DualSystems(
+        count=len(configurations),
         joints=tuple(each.joint for each in springs for _ in range(each.law.wrenches.shape[-1])),
-        compliance=compliance,
+        compliances=tuple(compliances),
         bodies={name: _together(parts, elements[name].size) for name, parts in on.items()},
         elements=elements,
     )
@@ -125,3 +152,12 @@ def _together(parts: Sequence[tuple[IntArray, FloatArray]], size: int) -> tuple[
 
 def _transposed(matrix: FloatArray) -> FloatArray:
     return np.swapaxes(matrix, -1, -2)
+
+
+def _add(S: FloatArray, rows: IntArray, block: FloatArray) -> None:
+    """S[:, rows, rows] += block, by runs of successive rows."""
+    cuts = [0, *(np.flatnonzero(np.diff(rows) != 1) + 1).tolist(), len(rows)]
+    runs = [(slice(start, stop), slice(rows[start], rows[stop - 1] + 1)) for start, stop in pairwise(cuts) if stop]
+    for here, there in runs:
+        for across, beside in runs:
+            S[:, there, beside] += block[:, here, across]

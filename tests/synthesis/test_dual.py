@@ -66,4 +66,4 @@ def test_as_many_eigenvalues_lie_below_a_shift(name: str, tmp_path: Path) -> Non
             scale = 1.0 / np.sqrt(np.abs(S[i]).max(axis=0))
             negative = int((np.linalg.eigvalsh(S[i] * np.outer(scale, scale)) < -1e-13).sum())
             assert below[i] - negative == int((exact < shift).sum())
-        assert len(dual.rows) == S.shape[1]
+        assert dual.size == S.shape[1]

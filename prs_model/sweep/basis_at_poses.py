@@ -1,0 +1,113 @@
+"""Making a basis that serves at all poses of a sweep: shapes at some of them, until its bounds are small at others."""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from itertools import product
+from typing import Any
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+from . import kernels_ritz as plain
+from .approaches import NotSmoothError
+from .exact import Solved, Solver
+from .poses import Poses
+from .request import Request
+from .ritz import RitzBasis, leading_shapes
+from .ritz_at_poses import RitzAtPoses
+
+_FIRST, _FURTHER, _ROUNDS = 64, 64, 4  # poses whose shapes a basis is made of
+_HELD_OUT = 192  # poses at which its bounds are looked at
+_SIZES = (18, 24, 30, 36, 42, 48, 60, 72, 90)  # shapes of a basis
+_SHARE = 0.99  # of the poses held out, at which bounds have to be small
+_SHIFT = 0.1  # below zero, of the largest lowest eigenvalue
+_ABOVE = 1.3  # times the highest eigenvalue asked for: the level below which eigenvalues are counted
+_FOLLOWED = 4  # modes above those asked for; those below the level lend their shapes too
+
+
+def ritz_at_poses(
+    request: Request, solver: Solver, poses: Poses, pool: ThreadPoolExecutor, kernels: Any = plain
+) -> tuple[RitzAtPoses, str]:
+    """The smallest basis whose bounds are within half of the tolerance at nearly all poses that were tried, and in
+    words how it was found. The numbers of poses are drawn with a fixed seed.
+
+    Poses whose bounds are too large lend their shapes to the next attempt. Raises NotSmoothError where that leads
+    nowhere or none of the poses is within reach, PrsError for a singular system.
+    """
+    if request.quantities != ("frequency",):
+        raise NotSmoothError("shapes in one basis for all poses give frequencies only")
+    rng = np.random.default_rng(4)
+    solver = replace(solver, count=request.n_modes + _FOLLOWED)
+    snapshots = _solved(
+        solver, _reachable(solver, poses, np.append(_extremes(poses), _drawn(poses, _FIRST, rng))), pool
+    )
+    for _ in range(_ROUNDS):
+        held_out = _reachable(solver, poses, _drawn(poses, _HELD_OUT, rng))
+        for size in _SIZES:
+            found = RitzAtPoses(_basis(request, solver, snapshots, size))
+            worst = _worst_bounds(found, solver, held_out, request, kernels)
+            if np.mean(worst <= request.tolerance / 2.0) >= _SHARE:
+                return found, _in_words(found.basis, snapshots, worst)
+            if found.basis.size < size:
+                break
+        snapshots += _solved(solver, held_out[np.argsort(worst)[-_FURTHER:]], pool)
+    raise NotSmoothError(f"{found.basis.size} shapes are not enough for all poses")
+
+
+def _basis(request: Request, solver: Solver, snapshots: list[Solved], size: int) -> RitzBasis:
+    """From the modes below the level."""
+    values = np.concatenate([each.modes.eigenvalues for each in snapshots])
+    if values.shape[1] < request.n_modes:
+        raise NotSmoothError(f"only {values.shape[1]} modes")
+    level = _ABOVE * float(values[:, request.n_modes - 1].max())
+    shapes = np.concatenate([each.modes.shapes for each in snapshots]).swapaxes(1, 2)[values < level]
+    mass = snapshots[0].systems.mass[0]
+    shift = min(solver.shift, -_SHIFT * float(values[:, 0].max()))
+    return RitzBasis(leading_shapes(mass, shapes.T, size), shift, level)
+
+
+def _worst_bounds(found: RitzAtPoses, solver: Solver, poses: FloatArray, request: Request, kernels: Any) -> FloatArray:
+    """Of each pose (m,), infinite where modes may be missing."""
+    configurations = solver.machine.kinematics.solve_batch(poses)
+    _, bounds, complete = found.at(solver.machine, configurations, request.n_modes, kernels)
+    return np.where(complete, bounds.max(axis=1), np.inf)
+
+
+def _solved(solver: Solver, poses: FloatArray, pool: ThreadPoolExecutor) -> list[Solved]:
+    return list(solver.each(poses, _kept, pool))
+
+
+def _kept(solved: Solved) -> Solved:
+    return solved
+
+
+def _reachable(solver: Solver, poses: Poses, numbers: IntArray) -> FloatArray:
+    """Those of the poses (m, d) with these numbers that are within reach."""
+    chosen = poses.at(np.unique(numbers))
+    chosen = chosen[solver.machine.kinematics.solve_batch(chosen).reachable]
+    if not len(chosen):
+        raise NotSmoothError("none of the poses that were tried is within reach")
+    return chosen
+
+
+def _drawn(poses: Poses, count: int, rng: np.random.Generator) -> IntArray:
+    return np.asarray(rng.choice(poses.size, min(count, poses.size), replace=False))
+
+
+def _extremes(poses: Poses) -> IntArray:
+    """The numbers of the corners of a grid; of a list, those of the least and largest value of each coordinate."""
+    if poses.points is not None:
+        return np.append(poses.points.argmin(axis=0), poses.points.argmax(axis=0))
+    corners = np.array(list(product(*[sorted({0, length - 1}) for length in poses.shape])), dtype=np.int64)
+    return np.asarray(np.ravel_multi_index(tuple(corners.T), poses.shape))
+
+
+def _in_words(basis: RitzBasis, snapshots: list[Solved], worst: FloatArray) -> str:
+    poses, level = sum(len(each.modes.eigenvalues) for each in snapshots), np.sqrt(basis.level) / (2.0 * np.pi)
+    sure = worst[np.isfinite(worst)]
+    return (
+        f"{basis.size} shapes from {poses} poses, counted below {level:.1f} Hz at every pose; "
+        f"largest bound at {len(sure)} others {sure.max():.1e}"
+    )
