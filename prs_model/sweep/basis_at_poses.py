@@ -11,8 +11,8 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from . import kernels_ritz as plain
-from .approaches import NotSmoothError
 from .exact import Solved, Solver
+from .not_smooth import NotSmoothError
 from .poses import Poses
 from .request import Request
 from .ritz import RitzBasis, leading_shapes

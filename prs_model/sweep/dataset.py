@@ -14,7 +14,7 @@ from ..description.units import SI
 from ..readable import pose_text
 from ..response.quantity import DIRECTIONS, unit
 from .poses import Poses
-from .quantities import DENSE, INTERPOLATED, UNREACHABLE, Block, labels, variables
+from .quantities import BOUNDED, DENSE, INTERPOLATED, UNREACHABLE, Block, labels, variables
 from .reasons import sentences
 from .request import Request
 from .tracking import Identities, follow, followed_nowhere
@@ -28,6 +28,7 @@ PROOFS: Mapping[int, str] = {
     UNREACHABLE: "none, the pose is unreachable",
     INTERPOLATED: "interpolated, its error estimated to be within the bound, and no mode missed by a count",
     DENSE: "the modes of the whole system",
+    BOUNDED: "bounded from both sides at the pose itself, and no mode missed by a count there",
 }
 """Codes of `proof` in words."""
 

@@ -13,19 +13,33 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from . import kernels as plain
+from .counting import Counting
 from .frames import Frame
-from .tensor import Interpolated
+from .symmetry import Symmetry
+from .tensor import Tensor
 
 
 @dataclass(frozen=True, eq=False)
-class Interpolation(Interpolated):
+class Interpolation(Tensor):
     """A tensor of L, and of what else is carried, with shapes at one pose by name; frame: the modes of L.
 
-    The error is that of log(lambda - shift).
+    parts: what lies where among the values. error: bound of that of log(lambda - shift), anywhere. joints: those that
+    come near a limit, whose values are interpolated too. symmetry: of the poses that stand for all. counting: of
+    eigenvalues below the frame's level, None where all there are are followed.
     """
 
     frame: Frame
     shapes: Mapping[str, tuple[int, ...]]
+    parts: Mapping[str, slice]
+    error: float
+    joints: tuple[int, ...]
+    symmetry: Symmetry | None
+    counting: Counting | None
+
+    @property
+    def asymmetry(self) -> float:
+        """What poses that stand for each other may differ by in log(lambda - shift)."""
+        return 0.0 if self.symmetry is None else self.symmetry.defect
 
     @property
     def shift(self) -> float:

@@ -1,4 +1,4 @@
-"""An interpolation as arrays and one JSON text, so that it can be kept without pickling and gone on with elsewhere."""
+"""How poses are worked out, as arrays and one JSON text: kept without pickling, and gone on with elsewhere."""
 
 from __future__ import annotations
 
@@ -13,29 +13,28 @@ from numpy.typing import NDArray
 from .counting import Counting
 from .frames import Frame
 from .interpolation import Interpolation
-from .ritz import RitzBasis, RitzInterpolation
+from .ritz import RitzBasis
+from .ritz_at_poses import RitzAtPoses
 from .spectral import Axis, Box
 from .symmetry import Symmetry
 
 Arrays = dict[str, NDArray[Any]]
 
-_KINDS = {
-    kind.__name__: kind for kind in (Interpolation, RitzInterpolation, Box, Axis, Frame, RitzBasis, Symmetry, Counting)
-}
+_KINDS = {kind.__name__: kind for kind in (Interpolation, RitzAtPoses, Box, Axis, Frame, RitzBasis, Symmetry, Counting)}
 _TEXT = "json"
 
 
-def to_arrays(interpolation: Interpolation | RitzInterpolation | None, why: str) -> Arrays:
-    """Numbers and text, none of which needs pickling. why: how the interpolation, or none, came about."""
+def to_arrays(found: Interpolation | RitzAtPoses | None, why: str) -> Arrays:
+    """Numbers and text, none of which needs pickling. why: how what was found, or nothing, came about."""
     arrays: Arrays = {}
-    content = {"why": why, "interpolation": _encoded(interpolation, "interpolation", arrays)}
+    content = {"why": why, "found": _encoded(found, "found", arrays)}
     return {_TEXT: np.array(json.dumps(content)), **arrays}
 
 
-def from_arrays(arrays: Arrays) -> tuple[Interpolation | RitzInterpolation | None, str]:
+def from_arrays(arrays: Arrays) -> tuple[Interpolation | RitzAtPoses | None, str]:
     """What `to_arrays` was given."""
     content = json.loads(str(arrays[_TEXT]))
-    return _decoded(content["interpolation"], arrays), content["why"]
+    return _decoded(content["found"], arrays), content["why"]
 
 
 def _encoded(value: Any, name: str, arrays: Arrays) -> Any:

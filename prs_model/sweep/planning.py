@@ -1,4 +1,4 @@
-"""Making an interpolation for a sweep: how many nodes it needs, and the proof that they are enough."""
+"""How a sweep is worked out: by an interpolation that pays, by one basis for all poses, or pose by pose."""
 
 from __future__ import annotations
 
@@ -12,33 +12,34 @@ import numpy as np
 from ..arrays import FloatArray
 from ..errors import PrsError
 from ..linear_algebra import positive_definite_pencil
-from .approaches import EXTRA, Approach, NotSmoothError, following, ritz_on_inverse
+from .basis_at_poses import ritz_at_poses
 from .box_of import MOST_COORDINATES, Shape, shape_of
+from .compiled import best
 from .convergence import Need, need
 from .counting import Counting, counting
 from .exact import Solved, Solver
+from .following import EXTRA, Following, following
 from .in_frame import is_possible, reaches
 from .interpolation import Interpolation
 from .kernels import as_frobenius
+from .not_smooth import NotSmoothError
 from .poses import Poses
 from .request import Request
-from .ritz import RitzInterpolation
+from .ritz_at_poses import RitzAtPoses
 from .spectral import Box
 from .symmetry import Logarithms, Symmetry, folded, symmetry_of
 
 if TYPE_CHECKING:
     from ..machine import Machine
-    from ..synthesis import System
 
-Found = Interpolation | RitzInterpolation
+Found = Interpolation | RitzAtPoses
 
 _FEWEST = 400  # poses that are worth an interpolation
+_WORTH_BASIS = 2000  # poses that are worth a basis for all of them
+_DEARER = 20.0  # a pose solved in full, beside one in a basis
 _LINE = (17, 33, 65, 129)  # nodes of the lines on which convergence is tried
-_RITZ_SIZES = (24, 36, 54, 80)  # shapes of a basis
 _BEYOND = 1.5  # times as many nodes as a line has, which may be reckoned from it
 _COARSE = 9  # nodes along each axis, at which joints are held against their limits
-_WORTH_RITZ = 10_000  # poses that are worth a basis
-_SCATTERED = 48  # poses whose shapes it is made of, beside those on the lines
 _SHARE = 1.4  # of the error allowed over the square of the number of axes, for what a line leaves out
 _AMPLE = 2.0  # times what the error is too large by, to be made up for with more nodes
 _TAKES_PART = 0.2  # of the longest tail: an axis whose own is shorter needs no more
@@ -50,24 +51,54 @@ _NEGLIGIBLE = 0.02  # of the error, what terms left out at the points of a list 
 _ROUNDING = 1e-11  # of a frequency
 
 
-def interpolated(
-    machine: Machine, poses: Poses, request: Request, pool: ThreadPoolExecutor
-) -> tuple[Found | None, str]:
-    """An interpolation whose frequencies are within the tolerance at nearly every pose, or none; and in words why.
+def planned(machine: Machine, poses: Poses, request: Request, pool: ThreadPoolExecutor) -> tuple[Found | None, str]:
+    """What gives frequencies within the tolerance at nearly every pose, or none; and in words why.
 
-    None where the poses are few or more than three coordinates vary, where nothing smooth is found, or where a node is
-    out of reach.
+    An interpolation where no more than three coordinates vary and its nodes are few beside the poses; else a basis for
+    all poses, if they are worth one and nothing but frequencies is asked for; else none, and all are solved in full.
     """
     if poses.size < _FEWEST:
         return None, f"{poses.size} poses are solved one by one"
-    if len(poses.varying()) not in range(1, MOST_COORDINATES + 1):
-        return None, f"{len(poses.varying())} coordinates vary, more than {MOST_COORDINATES}"
     if not is_possible(request, machine.description.file.damping):
         return None, "resonance peaks under damping of joints"
+    solver = _solver(machine, request)
     try:
-        return _Planner.of(machine, poses, request, pool).by_symmetry().plan()
-    except (NotSmoothError, PrsError) as error:
-        return None, f"no interpolation: {error}"
+        return _interpolated(machine, poses, request, solver, pool)
+    except PrsError as error:
+        why = f"no interpolation: {error}"
+    if not _worth_a_basis(poses, request):
+        return None, why
+    try:
+        found, words = ritz_at_poses(request, solver, poses, pool, best("kernels_ritz"))
+        return found, f"{words}; {why}"
+    except PrsError as error:
+        return None, f"{why}; {error}"
+
+
+def _interpolated(
+    machine: Machine, poses: Poses, request: Request, solver: Solver, pool: ThreadPoolExecutor
+) -> tuple[Interpolation, str]:
+    """Raises NotSmoothError where there is none or it does not pay, or PrsError for nodes out of reach."""
+    varying = len(poses.varying())
+    if varying not in range(1, MOST_COORDINATES + 1):
+        raise NotSmoothError(f"{varying} coordinates vary, more than {MOST_COORDINATES}")
+    planner = _Planner(machine, poses, poses, request, pool, shape_of(machine.kinematics, poses), solver)
+    return planner.by_symmetry().plan()
+
+
+def _solver(machine: Machine, request: Request) -> Solver:
+    """For enough modes to find a gap above those asked for, and above those that resonate in the band."""
+    reference = machine.assemble(machine.configuration(**machine.reference_pose))
+    shift, _ = positive_definite_pencil(reference.mass, reference.stiffness)
+    if request.band is None:
+        return Solver(machine, request.n_modes + EXTRA, shift)
+    frequencies = reference.modes(reference.size).frequencies
+    resonant = next((k for k, each in enumerate(frequencies) if reaches(request, each)), reference.size)
+    return Solver(machine, max(request.n_modes, resonant) + EXTRA, shift)
+
+
+def _worth_a_basis(poses: Poses, request: Request) -> bool:
+    return request.quantities == ("frequency",) and poses.size >= _WORTH_BASIS
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,14 +113,6 @@ class _Planner:
     shape: Shape
     solver: Solver
     symmetry: Symmetry | None = None
-
-    @classmethod
-    def of(cls, machine: Machine, poses: Poses, request: Request, pool: ThreadPoolExecutor) -> _Planner:
-        shape = shape_of(machine.kinematics, poses)
-        home = machine.assemble(machine.kinematics.solve_batch(shape.home[None])[0])
-        shift, _ = positive_definite_pencil(home.mass, home.stiffness)
-        solver = Solver(machine, _modes_needed(home, request), shift)
-        return cls(machine, poses, poses, request, pool, shape, solver)
 
     def by_symmetry(self) -> _Planner:
         """With fewer poses, if the machine is symmetric and no joint comes near its limits; frequencies only."""
@@ -106,54 +129,39 @@ class _Planner:
             self if self._comes_near_limits(shape, found) else replace(self, poses=poses, shape=shape, symmetry=found)
         )
 
-    def plan(self) -> tuple[Found, str]:
-        """The interpolation, and what was found in words. Raises NotSmoothError, or PrsError for nodes out of reach."""
+    def plan(self) -> tuple[Interpolation, str]:
+        """The interpolation, and what was found in words."""
         home = next(self.solver.each(self.shape.home[None], _kept, self.pool))
         lines = [self._line(k, _LINE[0]) for k in range(len(self.shape.columns))]
-        samples = [each for line in lines for each in line]
-        try:
-            values = np.concatenate([each.modes.eigenvalues for each in samples])
-            return self._fitted(following(self.request, self.solver, home, values), lines)
-        except NotSmoothError as error:
-            reason = str(error)
-        if self.poses.size <= _WORTH_RITZ:
-            raise NotSmoothError(reason)
-        samples += list(self.solver.each(self._scattered(), _kept, self.pool))
-        for size in _RITZ_SIZES:
-            try:
-                found, words = self._fitted(ritz_on_inverse(self.request, self.solver, home, samples, size), lines)
-                return found, f"{reason}; {words}"
-            except NotSmoothError as error:
-                reason = f"{reason}; {error}"
-        raise NotSmoothError(reason)
+        values = np.concatenate([each.modes.eigenvalues for line in lines for each in line])
+        return self._fitted(following(self.request, self.solver, home, values), lines)
+
+    @property
+    def _most_nodes(self) -> float:
+        """That pay, beside poses solved in full or in a basis."""
+        return self.poses.size / (_DEARER if _worth_a_basis(self.poses, self.request) else 2.0)
 
     def _line(self, k: int, count: int) -> list[Solved]:
         poses = self.shape.line(k, count)[1]
         return list(self.solver.each(poses.reshape(-1, poses.shape[-1]), _kept, self.pool))
 
-    def _scattered(self) -> FloatArray:
-        """Some of the poses (m, d) [m, rad]."""
-        count = min(_SCATTERED, self.poses.size)
-        numbers = np.sort(np.random.default_rng(3).choice(self.poses.size, count, replace=False))
-        return self.poses.at(numbers)
-
-    def _fitted(self, approach: Approach, lines: list[list[Solved]]) -> tuple[Found, str]:
-        """The interpolation by one approach, from lines solved already, with more nodes until its error is small."""
-        planner = replace(self, solver=replace(self.solver, count=approach.count))
+    def _fitted(self, modes: Following, lines: list[list[Solved]]) -> tuple[Interpolation, str]:
+        """The interpolation of modes, from lines solved already, with more nodes until its error is small."""
+        planner = replace(self, solver=replace(self.solver, count=modes.count))
         taken = 0.0 if self.symmetry is None else self.symmetry.defect / (2.0 * self.request.tolerance)
-        most = approach.wanted * (1.0 - taken)
-        needs = [planner._need(approach, k, line, most) for k, line in enumerate(lines)]
+        most = 2.0 * self.request.tolerance * (1.0 - taken)
+        needs = [planner._need(modes, k, line, most) for k, line in enumerate(lines)]
         counts = tuple(each.count for each in needs)
         for _ in range(_ATTEMPTS):
             box = self.shape.box(counts)
-            if len(box.solved) > self.poses.size / 2:
+            if len(box.solved) > self._most_nodes:
                 raise NotSmoothError(f"{len(box.solved)} nodes would be needed for {self.poses.size} poses")
-            found, tails = planner._interpolation(approach, box)
+            found, tails = planner._interpolation(modes, box)
             if found.error <= most:
                 share, worst = planner._held_out(found)
                 if worst is not None:
-                    counted = replace(found, counting=planner._counting(approach))
-                    return counted, self._in_words(counted, approach, share, worst)
+                    counted = replace(found, counting=planner._counting(modes))
+                    return counted, self._in_words(counted, modes, share, worst)
             excess = _AMPLE * max(found.error / most, 1.0)
             counts = tuple(
                 each.more(count, excess) if tail > _TAKES_PART * max(tails) else count
@@ -161,7 +169,7 @@ class _Planner:
             )
         raise NotSmoothError(f"{len(box.solved)} nodes are not enough")
 
-    def _need(self, approach: Approach, k: int, solved: list[Solved], most: float) -> Need:
+    def _need(self, modes: Following, k: int, solved: list[Solved], most: float) -> Need:
         """Nodes along coordinate k for which the last terms along lines have a small share of the error allowed."""
         most *= _SHARE / len(self.shape.columns) ** 2
         beyond = _BEYOND if len(self.shape.columns) < MOST_COORDINATES else 1.0  # a box of nodes outweighs many lines
@@ -169,16 +177,16 @@ class _Planner:
             axis, poses = self.shape.line(k, count)
             if count > _LINE[0]:
                 solved = self._line(k, count)
-            matrices = np.concatenate([as_frobenius(approach.on_line(each)) for each in solved])
+            matrices = np.concatenate([as_frobenius(modes.on_line(each)) for each in solved])
             if found := need(axis, matrices.reshape(*poses.shape[:2], -1), most, beyond):
                 return found
         raise NotSmoothError(f"{self.poses.names[self.shape.columns[k]]}: {axis.count} nodes along it are not enough")
 
-    def _interpolation(self, approach: Approach, box: Box) -> tuple[Found, tuple[float, ...]]:
-        """The interpolation on a box, and the error of its main matrices that is due to each of its axes."""
+    def _interpolation(self, modes: Following, box: Box) -> tuple[Interpolation, tuple[float, ...]]:
+        """The interpolation on a box, and the error that is due to each of its axes."""
 
         def at_nodes(solved: Solved) -> dict[str, FloatArray]:
-            return approach.at_nodes(solved) | {"joints": solved.configurations.q}
+            return modes.at_nodes(solved) | {"joints": solved.configurations.q}
 
         chunks = list(self.solver.each(box.poses(), at_nodes, self.pool))
         values = {name: np.concatenate([chunk[name] for chunk in chunks]) for name in chunks[0]}
@@ -190,9 +198,9 @@ class _Planner:
             name: slice(stop - each.shape[1], stop) for (name, each), stop in zip(flat.items(), stops, strict=True)
         }
         nodes = box.unfold(np.hstack(list(flat.values())))
-        tails = box.tail(as_frobenius(nodes[..., parts[approach.main]]))
+        tails = box.tail(as_frobenius(nodes[..., parts["logarithm"]]))
         error = (1.0 + _NEGLIGIBLE) * sum(tails)
-        found = approach.interpolation(
+        found = modes.interpolation(
             {name: each.shape[1:] for name, each in values.items()},
             box=box,
             nodes=nodes,
@@ -205,10 +213,10 @@ class _Planner:
         )
         return found, tails
 
-    def _counting(self, approach: Approach) -> Counting | None:
-        if approach.level is None:
+    def _counting(self, modes: Following) -> Counting | None:
+        if modes.frame.level is None:
             return None
-        return counting(self.solver, self.shape, self.poses, approach.level, self.pool)
+        return counting(self.solver, self.shape, self.poses, modes.frame.level, self.pool)
 
     def _comes_near_limits(self, shape: Shape, symmetry: Symmetry) -> bool:
         """Whether a joint does somewhere, among all poses that are alike: limbs may be alike but for their limits."""
@@ -223,7 +231,7 @@ class _Planner:
         room = _ROOM * (high - low) + _LIMIT_SLACK
         return [int(j) for j in np.flatnonzero((low - room < tree.lower) | (high + room > tree.upper))]
 
-    def _held_out(self, found: Found) -> tuple[float, float | None]:
+    def _held_out(self, found: Interpolation) -> tuple[float, float | None]:
         """Of some of the poses, solved exactly: the share whose bound is within the tolerance, and their largest error.
 
         No error where one is larger than its bound, or less than half of the poses are within the tolerance.
@@ -245,12 +253,12 @@ class _Planner:
             return float(sure.mean()), None
         return float(sure.mean()), float(errors[sure].max())
 
-    def _in_words(self, found: Found, approach: Approach, share: float, worst: float) -> str:
+    def _in_words(self, found: Interpolation, modes: Following, share: float, worst: float) -> str:
         nodes = f"{len(found.box.solved)} nodes ({' x '.join(map(str, found.box.shape))})"
         alike = "" if self.symmetry is None else f"; symmetric within {self.symmetry.defect / 2.0:.1e}"
         sure = "" if share == 1.0 else f", {share:.0%} of which it covers"
         checked = f"largest error at the corners and {_HELD_OUT} poses, solved exactly{sure}, {worst:.1e}"
-        return f"{nodes}, {approach.words()}{alike}; {checked}"
+        return f"{nodes}, {modes.words()}{alike}; {checked}"
 
 
 def _corners(poses: Poses) -> set[int]:
@@ -274,12 +282,3 @@ def _logarithms(solver: Solver, request: Request, pool: ThreadPoolExecutor) -> L
 
 def _kept(solved: Solved) -> Solved:
     return solved
-
-
-def _modes_needed(home: System, request: Request) -> int:
-    """Enough to find a gap above those asked for, and above those that resonate in the band."""
-    if request.band is None:
-        return request.n_modes + EXTRA
-    frequencies = home.modes(home.size).frequencies
-    resonant = next((k for k, each in enumerate(frequencies) if reaches(request, each)), home.size)
-    return max(request.n_modes, resonant) + EXTRA

@@ -19,8 +19,9 @@ if TYPE_CHECKING:
 Block = dict[str, NDArray[Any]]
 """Arrays by variable, the pose axis first; NaN where a pose is unreachable or a quantity does not exist."""
 
-UNREACHABLE, INTERPOLATED, DENSE = range(3)
-"""Codes of `proof`: none; interpolated, and modes counted; the modes of the whole system."""
+UNREACHABLE, INTERPOLATED, DENSE, BOUNDED = range(4)
+"""Codes of `proof`: none; interpolated, and modes counted; the modes of the whole system; bounded from both sides at
+this pose, and modes counted."""
 
 Labels = Mapping[str, Sequence[int] | Sequence[str]]
 """What stands along each dimension, by its name."""

@@ -43,6 +43,11 @@ class RitzAtPoses:
 
     basis: RitzBasis
 
+    @property
+    def shift(self) -> float:
+        """Below all eigenvalues [rad^2/s^2]."""
+        return self.basis.shift
+
     def at(
         self, machine: Machine, configurations: Configurations, count: int, kernels: Any = plain
     ) -> tuple[FloatArray, FloatArray, BoolArray]:

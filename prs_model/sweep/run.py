@@ -17,7 +17,7 @@ from .identity import identity
 from .lazy import results
 from .plan import Plan, make_plan
 from .poses import Poses
-from .quantities import DENSE, INTERPOLATED, UNREACHABLE, Block
+from .quantities import BOUNDED, DENSE, INTERPOLATED, UNREACHABLE, Block
 from .request import Request
 from .room import check_room
 from .store import Store, blank, opened, piece_length
@@ -71,7 +71,7 @@ def _plan(machine: Machine, poses: Poses, request: Request, pool: ThreadPoolExec
 def _spans(plan: Plan) -> Spans:
     """All pieces of a sweep that is not kept."""
     size, length = plan.poses.size, piece_length(plan.poses.shape)
-    if plan.interpolation is None:
+    if plan.found is None:
         length = min(length, _SOLVED)
     return {k: (start, min(start + length, size)) for k, start in enumerate(range(0, size, length))}
 
@@ -116,10 +116,11 @@ def certificate(plan: Plan, block: Mapping[str, Any]) -> dict[str, str | int | f
     facts: dict[str, str | int | float] = {
         "how": plan.why,
         "poses_interpolated": int(np.sum(proof == INTERPOLATED)),
+        "poses_bounded": int(np.sum(proof == BOUNDED)),
         "poses_solved": int(np.sum(proof == DENSE)),
         "poses_unreachable": int(np.sum(proof == UNREACHABLE)),
     }
-    bound = float(np.nan_to_num(block["bound"]).max()) if plan.interpolation is not None else 0.0
+    bound = float(np.nan_to_num(block["bound"]).max()) if plan.found is not None else 0.0
     if bound > 0.0:  # it has none where no pose is reachable
         facts["relative_error_bound"] = bound
     return facts

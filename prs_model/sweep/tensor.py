@@ -3,20 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..arrays import FloatArray
 from .poses import Poses
 from .spectral import Box, Terms, on_grid
-from .symmetry import Symmetry
-
-if TYPE_CHECKING:
-    from .counting import Counting
 
 Reader = Callable[[int, int], FloatArray]
 
@@ -49,27 +44,6 @@ class Tensor:
     @cached_property
     def _terms(self) -> Terms:
         return self.box.terms(self.nodes, self.negligible)
-
-
-@dataclass(frozen=True, eq=False)
-class Interpolated(Tensor):
-    """A tensor that frequencies are taken from: what lies where among the e, and how far it may be off.
-
-    error: bound of the error of what eigenvalues are taken from, anywhere. joints: those that come near a limit, whose
-    values are interpolated too. symmetry: of the poses that stand for all. counting: of eigenvalues below a level, or
-    None where all there are are followed.
-    """
-
-    parts: Mapping[str, slice]
-    error: float
-    joints: tuple[int, ...]
-    symmetry: Symmetry | None
-    counting: Counting | None
-
-    @property
-    def asymmetry(self) -> float:
-        """What poses that stand for each other may differ by in log(lambda - shift)."""
-        return 0.0 if self.symmetry is None else self.symmetry.defect
 
 
 def _block(nodes: FloatArray, weights: Sequence[FloatArray], start: int, stop: int) -> FloatArray:
