@@ -37,7 +37,7 @@ from .tensor import Tensor
 
 Counter = Callable[[int, int], IntArray]
 
-_FEWEST = {"chebyshev": 6, "fourier": 17}  # nodes along an axis, to begin with
+_FEWEST, _ROUND, _ACROSS = 6, 17, 10  # nodes to begin with: along an axis, a periodic one, one that is mirrored
 _ENLARGED = 1.4
 _MOST = 2500  # nodes
 _SLACK = 0.2  # allowed, of what remains of S, whose eigenvalues are about 1 and -1
@@ -90,6 +90,10 @@ class _Rest:
         S = S.copy()
         for row in self.eliminated:
             _eliminate(S, row)
+        return self.packed_rest(S)
+
+    def packed_rest(self, S: FloatArray) -> FloatArray:
+        """The same, of S (N, c, c) after elimination."""
         rows, columns = np.tril_indices(len(self.kept))
         return np.asarray((self.turned.T @ S[:, self.kept[:, None], self.kept] @ self.turned)[:, rows, columns])
 
@@ -99,7 +103,10 @@ def counting(solver: Solver, shape: Shape, poses: Poses, level: float, pool: Thr
 
     Raises NotSmoothError where a part alone has an eigenvalue at the level, or too many nodes would be needed.
     """
-    counts = tuple(_FEWEST["fourier" if turns else "chebyshev"] for turns in shape.periodic)
+    counts = tuple(
+        _ROUND if turns else _ACROSS if shape.mirror is not None and k == shape.mirror[0] else _FEWEST
+        for k, turns in enumerate(shape.periodic)
+    )
     wanted, best = _SLACK, None
     while len((box := shape.box(counts)).solved) <= min(_MOST, poses.size / 2):
         found, rest, tails = _on(box, solver, level, pool)
@@ -121,8 +128,8 @@ def counting(solver: Solver, shape: Shape, poses: Poses, level: float, pool: Thr
 def _on(box: Box, solver: Solver, level: float, pool: ThreadPoolExecutor) -> tuple[Counting, _Rest, tuple[float, ...]]:
     """With the nodes of a box; what remains of S; and its error that is due to each axis."""
     S, below = _dual(solver, box.poses(), level, pool)
-    rest, negative = _eliminated(box, S)
-    nodes = box.unfold(rest.packed(S))
+    rest, negative = _eliminate_steady(box, S)
+    nodes = box.unfold(rest.packed_rest(S))
     tails = box.tail(as_frobenius(nodes))
     slack = 2.0 * sum(tails) + _ROUNDING
     return Counting(box, nodes, 0.1 * slack, level, int(below[0]) - negative, len(rest.kept), slack), rest, tails
@@ -153,9 +160,9 @@ def _keep_away(elements: Iterable[Elements], level: float) -> bool:
     return all(np.array_equal(below.sum(axis=1), above.sum(axis=1)) for below, above in counts)
 
 
-def _eliminated(box: Box, S: FloatArray) -> tuple[_Rest, int]:
-    """What remains of S (N, c, c), and how many of the pivots were negative. The steadiest pivot comes first."""
-    S, left = S.copy(), np.arange(S.shape[1])
+def _eliminate_steady(box: Box, S: FloatArray) -> tuple[_Rest, int]:
+    """What remains of S (N, c, c), changed in place, and how many of the pivots were negative; the steadiest first."""
+    left = np.arange(S.shape[1])
     eliminated: list[int] = []
     negative = 0
     while len(left):

@@ -79,11 +79,11 @@ class Plan:
         first, last, places = self._folded.span(start, stop) if self._folded is not None else (start, stop, None)
         values = self._reader(first, last)
         block = self._quantities(found, values)
-        within = (block["bound"] <= self.request.tolerance).all(axis=1)
-        block["sure"] = within & self._complete(block.pop("below"), first)
         joints = values[found.parts["joints"]]
         if places is not None:
             block, joints = {name: each[places] for name, each in block.items()}, joints[:, places]
+        within = (block["bound"] <= self.request.tolerance).all(axis=1)
+        block["sure"] = within & self._complete(block.pop("below"), start)
         block["reason"] = self._reasons(found, joints, start, stop)
         block["proof"] = np.full(stop - start, INTERPOLATED, dtype=np.int8)
         return block
@@ -106,14 +106,14 @@ class Plan:
     @cached_property
     def _counted(self) -> Counter | None:
         counting = None if not isinstance(self.found, Interpolation) else self.found.counting
-        return None if counting is None else counting.at_most(self._distinct, best("kernels"))
+        return None if counting is None else counting.at_most(self.poses, best("kernels"))
 
-    def _complete(self, below: IntArray, first: int) -> BoolArray:
-        """Whether none is missing of the modes asked for at the poses from `first` on, `below` (m,) of which were found
-        below the level of counting."""
+    def _complete(self, below: IntArray, start: int) -> BoolArray:
+        """Whether none is missing of the modes asked for at the poses from `start` on, `below` (m,) of which were found
+        below the level of counting. Symmetry is not relied on."""
         if self._counted is None:
             return np.ones(len(below), dtype=bool)
-        most = self._counted(first, first + len(below))
+        most = self._counted(start, start + len(below))
         return np.asarray((most == below) & (below >= self.request.n_modes))
 
     def to_arrays(self) -> Arrays:

@@ -136,11 +136,6 @@ class _Planner:
         values = np.concatenate([each.modes.eigenvalues for line in lines for each in line])
         return self._fitted(following(self.request, self.solver, home, values), lines)
 
-    @property
-    def _most_nodes(self) -> float:
-        """That pay, beside poses solved in full or in a basis."""
-        return self.poses.size / (_DEARER if _worth_a_basis(self.poses, self.request) else 2.0)
-
     def _line(self, k: int, count: int) -> list[Solved]:
         poses = self.shape.line(k, count)[1]
         return list(self.solver.each(poses.reshape(-1, poses.shape[-1]), _kept, self.pool))
@@ -152,16 +147,29 @@ class _Planner:
         most = 2.0 * self.request.tolerance * (1.0 - taken)
         needs = [planner._need(modes, k, line, most) for k, line in enumerate(lines)]
         counts = tuple(each.count for each in needs)
+        self._check_pays(counts)
+        with ThreadPoolExecutor(1) as aside:
+            counted = aside.submit(planner._counting, modes)
+            found, words = planner._with_enough_nodes(modes, counts, needs, most)
+            return replace(found, counting=counted.result()), words
+
+    def _check_pays(self, counts: tuple[int, ...]) -> None:
+        """Raises NotSmoothError where poses solved in full, or in a basis, are less work than nodes."""
+        nodes = len(self.shape.box(counts).solved)
+        if nodes > self.poses.size / (_DEARER if _worth_a_basis(self.poses, self.request) else 2.0):
+            raise NotSmoothError(f"{nodes} nodes would be needed for {self.poses.size} poses")
+
+    def _with_enough_nodes(
+        self, modes: Following, counts: tuple[int, ...], needs: list[Need], most: float
+    ) -> tuple[Interpolation, str]:
         for _ in range(_ATTEMPTS):
+            self._check_pays(counts)
             box = self.shape.box(counts)
-            if len(box.solved) > self._most_nodes:
-                raise NotSmoothError(f"{len(box.solved)} nodes would be needed for {self.poses.size} poses")
-            found, tails = planner._interpolation(modes, box)
+            found, tails = self._interpolation(modes, box)
             if found.error <= most:
-                share, worst = planner._held_out(found)
+                share, worst = self._held_out(found)
                 if worst is not None:
-                    counted = replace(found, counting=planner._counting(modes))
-                    return counted, self._in_words(counted, modes, share, worst)
+                    return found, self._in_words(found, modes, share, worst)
             excess = _AMPLE * max(found.error / most, 1.0)
             counts = tuple(
                 each.more(count, excess) if tail > _TAKES_PART * max(tails) else count
@@ -216,7 +224,8 @@ class _Planner:
     def _counting(self, modes: Following) -> Counting | None:
         if modes.frame.level is None:
             return None
-        return counting(self.solver, self.shape, self.poses, modes.frame.level, self.pool)
+        shape = shape_of(self.machine.kinematics, self.asked)
+        return counting(self.solver, shape, self.asked, modes.frame.level, self.pool)
 
     def _comes_near_limits(self, shape: Shape, symmetry: Symmetry) -> bool:
         """Whether a joint does somewhere, among all poses that are alike: limbs may be alike but for their limits."""
