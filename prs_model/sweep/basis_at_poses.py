@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
+from ..linear_algebra import slowest_rate
 from . import kernels_ritz as plain
 from .exact import Solved, Solver
 from .not_smooth import NotSmoothError
@@ -17,14 +18,15 @@ from .poses import Poses
 from .request import Request
 from .ritz import RitzBasis, leading_shapes
 from .ritz_at_poses import RitzAtPoses
+from .rounding import rounding
 
 _FIRST, _FURTHER, _ROUNDS = 64, 64, 4  # poses whose shapes a basis is made of
 _HELD_OUT = 192  # poses at which its bounds are looked at
-_SIZES = (18, 24, 30, 36, 42, 48, 60, 72, 90)  # shapes of a basis
+_SIZES = (18, 21, 24, 27, 30, 33, 36, 39, 42, 46, 50, 55, 60, 66, 72, 80, 90)  # shapes of a basis
 _SHARE = 0.99  # of the poses held out, at which bounds have to be small
 _SHIFT = 0.1  # below zero, of the largest lowest eigenvalue
 _ABOVE = 1.3  # times the highest eigenvalue asked for: the level below which eigenvalues are counted
-_FOLLOWED = 4  # modes above those asked for; those below the level lend their shapes too
+_FOLLOWED = 4  # modes above those asked for, and more until one is above the level: all below it lend their shapes
 
 
 def ritz_at_poses(
@@ -39,14 +41,12 @@ def ritz_at_poses(
     if request.quantities != ("frequency",):
         raise NotSmoothError("shapes in one basis for all poses give frequencies only")
     rng = np.random.default_rng(4)
-    solver = replace(solver, count=request.n_modes + _FOLLOWED)
-    snapshots = _solved(
-        solver, _reachable(solver, poses, np.append(_extremes(poses), _drawn(poses, _FIRST, rng))), pool
-    )
+    first = _reachable(solver, poses, np.append(_extremes(poses), _drawn(poses, _FIRST, rng)))
+    solver, snapshots = _first_snapshots(request, solver, first, pool)
     for _ in range(_ROUNDS):
         held_out = _reachable(solver, poses, _drawn(poses, _HELD_OUT, rng))
         for size in _SIZES:
-            found = RitzAtPoses(_basis(request, solver, snapshots, size))
+            found = _basis(request, solver, snapshots, size)
             worst = _worst_bounds(found, solver, held_out, request, kernels)
             if np.mean(worst <= request.tolerance / 2.0) >= _SHARE:
                 return found, _in_words(found.basis, snapshots, worst)
@@ -56,16 +56,47 @@ def ritz_at_poses(
     raise NotSmoothError(f"{found.basis.size} shapes are not enough for all poses")
 
 
-def _basis(request: Request, solver: Solver, snapshots: list[Solved], size: int) -> RitzBasis:
+def _first_snapshots(
+    request: Request, solver: Solver, poses: FloatArray, pool: ThreadPoolExecutor
+) -> tuple[Solver, list[Solved]]:
+    """With all modes below the level; and the solver for as many."""
+    solver = replace(solver, count=request.n_modes + _FOLLOWED)
+    while True:
+        snapshots = _solved(solver, poses, pool)
+        values = _eigenvalues(snapshots)
+        if values.shape[1] < request.n_modes:
+            raise NotSmoothError(f"only {values.shape[1]} modes")
+        if values.shape[1] < solver.count or values[:, -1].min() > _level(request, values):
+            return solver, snapshots
+        solver = replace(solver, count=2 * solver.count)
+
+
+def _level(request: Request, values: FloatArray) -> float:
+    return _ABOVE * float(values[:, request.n_modes - 1].max())
+
+
+def _eigenvalues(snapshots: list[Solved]) -> FloatArray:
+    fewest = min(each.modes.eigenvalues.shape[1] for each in snapshots)
+    return np.concatenate([each.modes.eigenvalues[:, :fewest] for each in snapshots])
+
+
+def _basis(request: Request, solver: Solver, snapshots: list[Solved], size: int) -> RitzAtPoses:
     """From the modes below the level."""
-    values = np.concatenate([each.modes.eigenvalues for each in snapshots])
-    if values.shape[1] < request.n_modes:
-        raise NotSmoothError(f"only {values.shape[1]} modes")
-    level = _ABOVE * float(values[:, request.n_modes - 1].max())
-    shapes = np.concatenate([each.modes.shapes for each in snapshots]).swapaxes(1, 2)[values < level]
-    mass = snapshots[0].systems.mass[0]
+    values = _eigenvalues(snapshots)
+    level = _level(request, values)
+    shapes = np.concatenate([each.modes.shapes[:, :, : values.shape[1]] for each in snapshots])
+    columns = shapes.swapaxes(1, 2)[values < level].T
     shift = min(solver.shift, -_SHIFT * float(values[:, 0].max()))
-    return RitzBasis(leading_shapes(mass, shapes.T, size), shift, level)
+    basis = RitzBasis(leading_shapes(snapshots[0].systems.mass[0], columns, size), shift, level)
+    return RitzAtPoses(basis, max(_rounding(each, request.n_modes) for each in snapshots))
+
+
+def _rounding(solved: Solved, count: int) -> float:
+    """Of a frequency, at most."""
+    systems, modes = solved.systems, solved.modes
+    mass, stiffness = (np.diagonal(each, axis1=1, axis2=2) for each in (systems.mass, systems.stiffness))
+    rate = np.array([slowest_rate(mass, stiffness) for mass, stiffness, _ in systems.pencils])
+    return float(np.nanmax(rounding(modes.eigenvalues, modes.shapes, mass, stiffness, rate)[:, :count], initial=0.0))
 
 
 def _worst_bounds(found: RitzAtPoses, solver: Solver, poses: FloatArray, request: Request, kernels: Any) -> FloatArray:

@@ -18,6 +18,7 @@ BoolArray = NDArray[np.bool_]
 
 uint: Any = numba.uintp  # an index without sign never counts from the end, and loops become vector instructions
 
+_WIDTH = 8  # columns that are improved at a time
 _PIVOT = 1e-7  # of what it is the difference of: elimination loses no more digits than that
 
 
@@ -45,32 +46,24 @@ def moments(packed: Any, count: int) -> FloatArray:
     result = np.empty((len(packed.readings), 3, count, count))
     x, pencils = np.empty((many, most, packed.sizes[:, 0].max() + r)), np.empty((many, most, most))
     a, mass, d, scale = np.empty((whole, whole)), np.empty((r, r)), np.empty((many, most)), np.empty(whole + most)
-    loads, once, wrenches = np.empty((many, most, count)), np.empty((many, most, count)), np.empty((size, count))
-    further, twice = np.empty((many, most, count)), np.empty((many, most, count))
+    blocks, wrenches = -(-count // _WIDTH), np.empty((size, _WIDTH))
+    shape = (blocks, many, most, _WIDTH)
+    loads, once, further, twice = np.zeros(shape), np.zeros(shape), np.zeros(shape), np.zeros(shape)
     for p in range(len(result)):
         _assembled(packed, p, a, mass, x, pencils, d, scale)
         _eliminated(a, x[0], size, whole, 0, scale)
         chosen = _ritz_vectors(a[size:, size:], mass, count)
-        for b in range(many):
-            k, n, _ = packed.sizes[b]
-            for i in range(n):
-                loads[b, i] = 0.0
-                for j in range(r):
-                    factor = x[b, i, k + j]
-                    for c in range(uint(0), uint(count)):
-                        loads[b, i, c] += factor * chosen[j, c]
-        _applied(packed, a, size, x, d, loads, wrenches, once)
-        _momenta(packed, p, pencils, d, once, loads)
-        _applied(packed, a, size, x, d, loads, wrenches, twice)
-        _momenta(packed, p, pencils, d, twice, further)
-        result[p] = 0.0
-        for b in range(many):
-            for i in range(packed.sizes[b, 1]):
-                for j in range(count):
-                    for c in range(uint(0), uint(count)):
-                        result[p, 0, j, c] += once[b, i, j] * loads[b, i, c]
-                        result[p, 1, j, c] += twice[b, i, j] * loads[b, i, c]
-                        result[p, 2, j, c] += twice[b, i, j] * further[b, i, c]
+        for e in range(blocks):
+            _loads(packed, x, chosen, e * _WIDTH, loads[e])
+            _applied(packed, a, size, x, d, loads[e], wrenches, once[e])
+            _momenta(packed, p, pencils, d, once[e], loads[e])
+            _applied(packed, a, size, x, d, loads[e], wrenches, twice[e])
+            _momenta(packed, p, pencils, d, twice[e], further[e])
+        for i in range(count):
+            for j in range(count):
+                result[p, 0, i, j] = _together(packed, once, loads, i, j)
+                result[p, 1, i, j] = _together(packed, twice, loads, i, j)
+                result[p, 2, i, j] = _together(packed, twice, further, i, j)
     return result
 
 
@@ -92,6 +85,30 @@ def _ritz_vectors(upper: FloatArray, mass: FloatArray, count: int) -> FloatArray
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
+def _loads(packed: Any, x: FloatArray, chosen: FloatArray, first: int, result: FloatArray) -> None:
+    """X^T M V of each body times columns first, .. of those chosen (r, p); zero beyond them."""
+    wide = min(_WIDTH, chosen.shape[1] - first)
+    for b in range(len(packed.sizes)):
+        k, n, _ = packed.sizes[b]
+        for i in range(n):
+            result[b, i] = 0.0
+            for j in range(len(chosen)):
+                factor = x[b, i, k + j]
+                for c in range(wide):
+                    result[b, i, c] += factor * chosen[j, first + c]
+
+
+@numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
+def _together(packed: Any, a: FloatArray, b: FloatArray, i: int, j: int) -> float:
+    """Sum over all bodies of column i of one times column j of the other."""
+    total = 0.0
+    for body in range(len(packed.sizes)):
+        for k in range(packed.sizes[body, 1]):
+            total += a[i // _WIDTH, body, k, i % _WIDTH] * b[j // _WIDTH, body, k, j % _WIDTH]
+    return total
+
+
+@numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
 def _applied(
     packed: Any,
     a: FloatArray,
@@ -102,8 +119,8 @@ def _applied(
     wrenches: FloatArray,
     result: FloatArray,
 ) -> None:
-    """(K - s M)^-1 of loads (b, n, p), of each body and on its coordinates X."""
-    wide = uint(wrenches.shape[1])
+    """(K - s M)^-1 of loads (b, n, width), of each body and on its coordinates X."""
+    wide = uint(_WIDTH)
     wrenches[:] = 0.0
     rows = 0
     for b in range(len(packed.sizes)):
@@ -130,13 +147,14 @@ def _applied(
     rows = 0
     for b in range(len(packed.sizes)):
         k, n, _ = packed.sizes[b]
-        for j in range(n):
-            for c in range(wide):
-                result[b, j, c] = loads[b, j, c]
-            for i in range(k):
-                row, factor = packed.rows[rows + i], x[b, j, i]
+        result[b, :n] = loads[b, :n]
+        for i in range(k):
+            row = packed.rows[rows + i]
+            for j in range(n):
+                factor = x[b, j, i]
                 for c in range(wide):
                     result[b, j, c] -= factor * wrenches[row, c]
+        for j in range(n):
             for c in range(wide):
                 result[b, j, c] /= d[b, j]
         rows += k
@@ -144,8 +162,8 @@ def _applied(
 
 @numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
 def _momenta(packed: Any, p: int, pencils: FloatArray, d: FloatArray, shapes: FloatArray, result: FloatArray) -> None:
-    """X^T M X of shapes (b, n, p) on the coordinates X; of a body that follows the pose X is L^-T."""
-    wide = uint(shapes.shape[2])
+    """X^T M X of shapes (b, n, width) on the coordinates X; of a body that follows the pose X is L^-T."""
+    wide = uint(_WIDTH)
     moving, diagonals = 0, 0
     for b in range(len(packed.sizes)):
         _, n, follows = packed.sizes[b]

@@ -33,15 +33,15 @@ if TYPE_CHECKING:
     from ..kinematics import Configurations
     from ..machine import Machine
 
-_ROUNDING = 1e-11  # of a frequency
 _CHUNK = 256  # configurations at once: 30 MB at 160 coordinates
 
 
 @dataclass(frozen=True, eq=False)
 class RitzAtPoses:
-    """A basis that serves at any pose."""
+    """A basis that serves at any pose. rounding: of frequencies, relative, which is added to their bounds."""
 
     basis: RitzBasis
+    rounding: float = 1e-11
 
     @property
     def shift(self) -> float:
@@ -72,10 +72,11 @@ class RitzAtPoses:
         mu, theta, residual = _improved(kernels.moments(packed(dual, basis.shapes, basis.shift, basis.shift), several))
         pole = 1.0 / (basis.level - basis.shift)
         complete = sure & ((theta > pole).sum(axis=1) == number) & (number >= count)
-        highest = np.where(complete[:, None], pole + _lehmann(theta - pole, residual)[:, :count], np.inf)
+        highest = pole + _lehmann(theta - pole, residual)[:, :count]
         eigenvalues = np.maximum(1.0 / mu[:, :count] + basis.shift, np.finfo(float).tiny)
         off = np.maximum(highest - mu[:, :count], 0.0) / (mu[:, :count] * highest)
-        return np.sqrt(eigenvalues) / (2.0 * np.pi), off / (2.0 * eigenvalues) + _ROUNDING, complete
+        off[~complete] = np.inf
+        return np.sqrt(eigenvalues) / (2.0 * np.pi), off / (2.0 * eigenvalues) + self.rounding, complete
 
 
 def _improved(moments: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
