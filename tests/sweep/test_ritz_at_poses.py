@@ -14,11 +14,11 @@ import pytest
 import prs_model as prs
 from prs_model.linear_algebra import positive_definite_pencil
 from prs_model.sweep import kernels_ritz
-from prs_model.sweep.approaches import NotSmoothError
 from prs_model.sweep.basis_at_poses import ritz_at_poses
 from prs_model.sweep.dual_packed import packed
 from prs_model.sweep.exact import Solver, part
 from prs_model.sweep.low_modes import low_modes
+from prs_model.sweep.not_smooth import NotSmoothError
 from prs_model.sweep.poses import Poses
 from prs_model.sweep.request import Request
 from prs_model.sweep.ritz import RitzBasis, leading_shapes
