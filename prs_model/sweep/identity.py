@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ..machine import Machine
     from .poses import Poses
 
-VERSION = 1  # raised when a sweep changes its results
+VERSION = 2  # raised when a sweep changes its results
 
 
 def identity(machine: Machine, poses: Poses, request: Request) -> str:

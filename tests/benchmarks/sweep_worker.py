@@ -121,7 +121,7 @@ def timed(machine: prs.Machine, asked: dict[str, Any]) -> tuple[float, float, xa
 
 
 def told(data: xarray.Dataset) -> dict[str, Any]:
-    keys = ("how", "poses_interpolated", "poses_solved", "poses_unreachable", "relative_error_bound")
+    keys = ("how", "poses_interpolated", "poses_bounded", "poses_solved", "poses_unreachable", "relative_error_bound")
     return {key: data.attrs.get(f"certificate_{key}") for key in keys}
 
 
