@@ -52,8 +52,6 @@ def sweep(
     if store is None or find_spec("dask") is None:
         check_room(machine, poses, request)
     identity_text = identity(machine, poses, request) if store is not None else ""
-    if progress is not None:
-        progress(0, poses.size)
     with ExitStack() as held:
         pool = held.enter_context(workers())
         kept = held.enter_context(opened(store, identity_text, poses.shape)) if store is not None else None
