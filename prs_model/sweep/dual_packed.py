@@ -7,12 +7,14 @@ from dataclasses import dataclass, field, replace
 from functools import lru_cache
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..arrays import FloatArray, IntArray
 from ..synthesis.dual import DualSystems
 from .kernels_ritz import Packed
 
 _Groups = tuple[tuple[int, ...], ...]
+_Indices = NDArray[np.int64]
 
 
 def packed(dual: DualSystems, shapes: FloatArray, shift: float, at: float) -> Packed:
@@ -22,10 +24,11 @@ def packed(dual: DualSystems, shapes: FloatArray, shift: float, at: float) -> Pa
     Raises numpy.linalg.LinAlgError where `at` is an eigenvalue of such a body alone.
     """
     q, r = dual.size, shapes.shape[1]
-    place, constant, mass = _places(dual), np.zeros((q + r, q + r)), np.zeros((r, r))
+    place, starts, columns = _elimination_of(dual)
+    constant, mass = np.zeros((q + r, q + r)), np.zeros((r, r))
     entries, values = [np.zeros((0, 2), dtype=np.int64)], [np.zeros((len(dual), 0))]
-    for rows, columns, added in dual.entries():
-        where = np.sort(np.column_stack([place[rows], place[columns]]), axis=1)
+    for rows, others, added in dual.entries():
+        where = np.sort(np.column_stack([place[rows], place[others]]), axis=1)
         if len(added) == 1:
             np.add.at(constant, tuple(where.T), added[0])
         else:
@@ -50,6 +53,8 @@ def packed(dual: DualSystems, shapes: FloatArray, shift: float, at: float) -> Pa
         shapes=_flat([each.shapes for each in moving]),
         entries=np.concatenate(entries),
         values=np.concatenate(values, axis=1),
+        starts=starts,
+        columns=columns,
         constant=np.triu(constant),
         mass=np.triu(mass),
         below=q - len(dual.joints) + sum(int((each.pivots < 0.0).sum()) for each in fixed),
@@ -122,25 +127,39 @@ def _side_by_side(stacks: Sequence[FloatArray], count: int) -> FloatArray:
     return result
 
 
-def _places(dual: DualSystems) -> IntArray:
-    """Where in S each wrench goes, in the order of elimination; coordinates that only joints hold come last."""
-    groups = [rows for rows, _ in dual.bodies.values()] + [rows for rows, _ in dual.compliances]
-    wrenches = _order(tuple(tuple(rows.tolist()) for rows in groups), len(dual.joints))
-    return np.concatenate([np.argsort(wrenches), np.arange(len(dual.joints), dual.size)])
+def _elimination_of(dual: DualSystems) -> tuple[IntArray, _Indices, _Indices]:
+    """Where in S each of its rows goes (q,), and the fill, see Packed; coordinates that only joints hold come last."""
+    c, place = len(dual.joints), len(dual.joints)
+    groups = [rows.tolist() for rows, _ in dual.compliances]
+    for name, (rows, _) in dual.bodies.items():
+        groups.append(rows.tolist())
+        held = range(place, place := place + len(dual.coordinates[name][1]))
+        groups += [[coordinate, *rows.tolist()] for coordinate in held]
+    order, fill = _elimination(tuple(map(tuple, groups)), c, dual.size)
+    places = np.argsort(order).astype(np.int64)
+    columns = [np.sort(places[list(each)]) for each in fill]
+    starts = np.cumsum([0, *map(len, columns)], dtype=np.int64)
+    return places, starts, np.concatenate([np.zeros(0, dtype=np.int64), *columns])
 
 
 @lru_cache(maxsize=8)
-def _order(groups: _Groups, size: int) -> tuple[int, ...]:
-    """Rows of a matrix in which each group is full: next is always that whose elimination fills least (Tinney 3)."""
+def _elimination(groups: _Groups, first: int, size: int) -> tuple[tuple[int, ...], _Groups]:
+    """Order of the rows of a matrix in which each group is full, and the columns that each meets when it is eliminated.
+
+    Of the `first` rows, and then of the rest, next is always that whose elimination fills least (Tinney's scheme 3).
+    """
     beside: list[set[int]] = [set() for _ in range(size)]
     for group in groups:
         for row in group:
             beside[row] |= set(group) - {row}
-    left, order = set(range(size)), []
-    while left:
-        row = min(left, key=lambda i: (sum(len(beside[i] - beside[j]) for j in beside[i]), i))
-        for other in beside[row]:
-            beside[other] = (beside[other] | beside[row]) - {row, other}
-        left.remove(row)
-        order.append(row)
-    return tuple(order)
+    order: list[int] = []
+    fill: list[tuple[int, ...]] = []
+    for left in (set(range(first)), set(range(first, size))):
+        while left:
+            row = min(left, key=lambda i: (sum(len(beside[i] - beside[j]) for j in beside[i]), i))
+            for other in beside[row]:
+                beside[other] = (beside[other] | beside[row]) - {row, other}
+            left.remove(row)
+            order.append(row)
+            fill.append(tuple(beside[row]))
+    return tuple(order), tuple(fill)

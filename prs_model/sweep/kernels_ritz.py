@@ -27,9 +27,10 @@ class Packed(NamedTuple):
     rows (sum of k): of S, of its wrenches, ascending. readings (N, sum of n k): B^T. Of bodies that are the same at all
     poses roots (sum of n^2): X^T; pivots (sum of n): d; inertias (sum of n): X^T M X, which is diagonal; loads (sum of
     n r): X^T M V. Of those that follow the pose pencils, masses (N, sum of n^2): K_0 - s M and M; shapes (sum of n r):
-    V. entries (m, 2) and values (N, m): places in the upper triangle of S, and what is added there. constant
-    (q + r, q + r) and mass (r, r): upper triangles of what is the same at all poses of [[S, g], [g^T, G_0]] and of
-    V^T M V; below: how many eigenvalues it adds below s.
+    V. entries (m, 2) and values (N, m): places in the upper triangle of S, and what is added there. starts (q + 1,):
+    row j of S has entries, when its turn to be eliminated comes, in columns[starts[j]:starts[j + 1]] beside its
+    diagonal. constant (q + r, q + r) and mass (r, r): upper triangles of what is the same at all poses of
+    [[S, g], [g^T, G_0]] and of V^T M V; below: how many eigenvalues it adds below s.
     """
 
     sizes: IntArray
@@ -44,6 +45,8 @@ class Packed(NamedTuple):
     shapes: FloatArray
     entries: IntArray
     values: FloatArray
+    starts: IntArray
+    columns: IntArray
     constant: FloatArray
     mass: FloatArray
     below: int

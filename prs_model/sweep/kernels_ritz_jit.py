@@ -32,7 +32,7 @@ def below(packed: Any) -> tuple[IntArray, BoolArray]:
     a, mass, d, scale = np.empty((whole, whole)), np.empty((r, r)), np.empty((many, n)), np.empty(whole + n)
     for p in range(count):
         negative, certain = _assembled(packed, p, a, mass, x, pencils, d, scale)
-        ours, fine = _eliminated(a, x[0], whole - r, whole, 0, scale)
+        ours, fine = _condensed(packed, a, scale)
         number[p], sure[p] = negative - ours, certain and fine
     return number, sure
 
@@ -51,13 +51,13 @@ def moments(packed: Any, count: int) -> FloatArray:
     loads, once, further, twice = np.zeros(shape), np.zeros(shape), np.zeros(shape), np.zeros(shape)
     for p in range(len(result)):
         _assembled(packed, p, a, mass, x, pencils, d, scale)
-        _eliminated(a, x[0], size, whole, 0, scale)
+        _condensed(packed, a, scale)
         chosen = _ritz_vectors(a[size:, size:], mass, count)
         for e in range(blocks):
             _loads(packed, x, chosen, e * _WIDTH, loads[e])
-            _applied(packed, a, size, x, d, loads[e], wrenches, once[e])
+            _applied(packed, a, x, d, loads[e], wrenches, once[e])
             _momenta(packed, p, pencils, d, once[e], loads[e])
-            _applied(packed, a, size, x, d, loads[e], wrenches, twice[e])
+            _applied(packed, a, x, d, loads[e], wrenches, twice[e])
             _momenta(packed, p, pencils, d, twice[e], further[e])
         for i in range(count):
             for j in range(count):
@@ -71,11 +71,7 @@ def moments(packed: Any, count: int) -> FloatArray:
 def _ritz_vectors(upper: FloatArray, mass: FloatArray, count: int) -> FloatArray:
     """Those with the largest Ritz values mu, times 1 / mu (r, count)."""
     r = len(mass)
-    full, product = np.empty((r, r)), np.empty((r, r))
-    for i in range(r):
-        for j in range(i, r):
-            full[i, j] = full[j, i] = upper[i, j]
-            product[i, j] = product[j, i] = mass[i, j]
+    full, product = upper + np.triu(upper, 1).T, mass + np.triu(mass, 1).T
     root = np.linalg.inv(np.linalg.cholesky(product))
     values, vectors = np.linalg.eigh(root @ full @ root.T)
     some = np.empty((r, count))
@@ -112,7 +108,6 @@ def _together(packed: Any, a: FloatArray, b: FloatArray, i: int, j: int) -> floa
 def _applied(
     packed: Any,
     a: FloatArray,
-    size: int,
     x: FloatArray,
     d: FloatArray,
     loads: FloatArray,
@@ -120,7 +115,7 @@ def _applied(
     result: FloatArray,
 ) -> None:
     """(K - s M)^-1 of loads (b, n, width), of each body and on its coordinates X."""
-    wide = uint(_WIDTH)
+    wide, size = uint(_WIDTH), len(wrenches)
     wrenches[:] = 0.0
     rows = 0
     for b in range(len(packed.sizes)):
@@ -132,16 +127,14 @@ def _applied(
                     wrenches[row, c] += factor * loads[b, j, c]
         rows += k
     for j in range(size):
-        for i in range(j + 1, size):
-            if a[j, i] != 0.0:
-                factor = a[j, i] / a[j, j]
-                for c in range(wide):
-                    wrenches[i, c] -= factor * wrenches[j, c]
+        for i in packed.columns[packed.starts[j] : packed.starts[j + 1]]:
+            factor = a[j, i] / a[j, j]
+            for c in range(wide):
+                wrenches[i, c] -= factor * wrenches[j, c]
     for j in range(size - 1, -1, -1):
-        for i in range(j + 1, size):
-            if a[j, i] != 0.0:
-                for c in range(wide):
-                    wrenches[j, c] -= a[j, i] * wrenches[i, c]
+        for i in packed.columns[packed.starts[j] : packed.starts[j + 1]]:
+            for c in range(wide):
+                wrenches[j, c] -= a[j, i] * wrenches[i, c]
         for c in range(wide):
             wrenches[j, c] /= a[j, j]
     rows = 0
@@ -227,7 +220,7 @@ def _assembled(
             pencils[b, :n, :n] = packed.pencils[p, moving : moving + n * n].reshape(n, n)
             shape = packed.shapes[shapes : shapes + n * len(mass)].reshape(n, len(mass))
             _beside(own, shape, forces, x[b], mass)
-            negative, certain = _eliminated(pencils[b], x[b], n, n, width, scale)
+            negative, certain = _eliminated(pencils[b], x[b], n, width, scale)
             number, fine = number + negative, fine and certain
             for i in range(n):
                 d[b, i] = pencils[b, i, i]
@@ -242,7 +235,9 @@ def _assembled(
             loads += n * len(mass)
             diagonals += n
         last = width if follows else k
-        _products(x[b], d[b], n, last, width, added)
+        added[:last, :width] = 0.0
+        scale[:n] = 1.0 / d[b, :n]
+        _products(x[b], scale, n, 0, last, width, added)
         for i in range(k):
             row = packed.rows[rows + i]
             for j in range(i, k):
@@ -287,42 +282,59 @@ def _turned(root: FloatArray, forces: FloatArray, load: FloatArray, x: FloatArra
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
-def _products(x: FloatArray, d: FloatArray, n: int, last: int, width: int, added: FloatArray) -> None:
-    """The first rows of the upper triangle of x^T diag(1 / d) x."""
-    for i in range(last):
-        added[i, i:width] = 0.0
-        for j in range(n):
-            factor = x[j, i] / d[j]
+def _products(x: FloatArray, w: FloatArray, n: int, first: int, last: int, width: int, result: FloatArray) -> None:
+    """Adds x^T diag(w) x to rows first .. last of an upper triangle, from four rows of x at a time."""
+    for i in range(first, last):
+        for j in range(0, n - n % 4, 4):
+            f, g, h, e = w[j] * x[j, i], w[j + 1] * x[j + 1, i], w[j + 2] * x[j + 2, i], w[j + 3] * x[j + 3, i]
             for c in range(uint(i), uint(width)):
-                added[i, c] += factor * x[j, c]
+                result[i, c] += f * x[j, c] + g * x[j + 1, c] + h * x[j + 2, c] + e * x[j + 3, c]
+        for j in range(n - n % 4, n):
+            f = w[j] * x[j, i]
+            for c in range(uint(i), uint(width)):
+                result[i, c] += f * x[j, c]
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
-def _eliminated(a: FloatArray, x: FloatArray, size: int, whole: int, width: int, scale: FloatArray) -> tuple[int, bool]:
-    """LDL^T in place on upper triangles; how many pivots are negative, and whether that is sure."""
+def _eliminated(a: FloatArray, x: FloatArray, n: int, width: int, scale: FloatArray) -> tuple[int, bool]:
+    """L D L^T of the upper triangle of a (n, n), L^-1 x; how many pivots are negative, and whether that is sure."""
+    negative, sure = 0, True
+    for i in range(n):
+        scale[i] = abs(a[i, i])
+    for j in range(n):
+        pivot = a[j, j]
+        negative += pivot < 0.0
+        sure = sure and abs(pivot) > _PIVOT * scale[j]
+        for i in range(j + 1, n):
+            factor = a[j, i] / pivot
+            scale[i] += abs(factor * a[j, i])
+            for c in range(uint(i), uint(n)):
+                a[i, c] -= factor * a[j, c]
+            for c in range(uint(0), uint(width)):
+                x[i, c] -= factor * x[j, c]
+    return negative, sure
+
+
+@numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
+def _condensed(packed: Any, a: FloatArray, scale: FloatArray) -> tuple[int, bool]:
+    """The same of S, which leaves A in the last rows: as told by the fill."""
+    whole = len(a)
+    size = whole - len(packed.mass)
     negative, sure = 0, True
     for i in range(size):
         scale[i] = abs(a[i, i])
     for j in range(size):
-        pivot = a[j, j]
+        pivot, columns = a[j, j], packed.columns[packed.starts[j] : packed.starts[j + 1]]
         negative += pivot < 0.0
         sure = sure and abs(pivot) > _PIVOT * scale[j]
-        last = size
-        while last > j + 1 and a[j, last - 1] == 0.0:
-            last -= 1
-        for i in range(j + 1, last):
-            if a[j, i] == 0.0:
-                continue
+        last = columns[-1] + 1 if len(columns) else j
+        for i in columns:
             factor = a[j, i] / pivot
             scale[i] += abs(factor * a[j, i])
             for c in range(uint(i), uint(last)):
                 a[i, c] -= factor * a[j, c]
             for c in range(uint(size), uint(whole)):
                 a[i, c] -= factor * a[j, c]
-            for c in range(uint(0), uint(width)):
-                x[i, c] -= factor * x[j, c]
-        for i in range(size, whole):
-            factor = a[j, i] / pivot
-            for c in range(uint(i), uint(whole)):
-                a[i, c] -= factor * a[j, c]
+        scale[j] = -1.0 / pivot
+    _products(a, scale, size, size, whole, whole, a)
     return negative, sure
