@@ -26,6 +26,7 @@ _SIZES = (18, 21, 24, 27, 30, 33, 36, 39, 42, 46, 50, 55, 60, 66, 72, 80, 90)  #
 _SHARE = 0.98  # of the poses held out, at which bounds have to be small
 _SHIFT = 0.1  # below zero, of the largest lowest eigenvalue
 _ABOVE = 1.3  # times the highest eigenvalue asked for: the level below which eigenvalues are counted
+_SINGULAR = 1e-11  # of the largest eigenvalue of S
 _FOLLOWED = 4  # modes above those asked for, and more until one is above the level: all below it lend their shapes
 
 
@@ -42,6 +43,7 @@ def ritz_at_poses(
         raise NotSmoothError("shapes in one basis for all poses give frequencies only")
     rng = np.random.default_rng(4)
     first = _reachable(solver, poses, np.append(_extremes(poses), _drawn(poses, _FIRST, rng)))
+    _check_rigid_joints(solver, first[:1])
     solver, snapshots = _first_snapshots(request, solver, first, pool)
     for _ in range(_ROUNDS):
         held_out = _reachable(solver, poses, _drawn(poses, _HELD_OUT, rng))
@@ -54,6 +56,14 @@ def ritz_at_poses(
                 break
         snapshots += _solved(solver, held_out[np.argsort(worst)[-_FURTHER:]], pool)
     raise NotSmoothError(f"{found.basis.size} shapes are not enough for all poses")
+
+
+def _check_rigid_joints(solver: Solver, pose: FloatArray) -> None:
+    """Raises NotSmoothError where S is singular below all eigenvalues, at one pose (1, d)."""
+    S, _ = solver.dual(solver.machine.kinematics.solve_batch(pose)).at(-1.0)
+    scale = 1.0 / np.sqrt(np.diagonal(S[0]).clip(np.finfo(float).tiny))
+    if np.linalg.eigvalsh(S[0] * np.outer(scale, scale))[0] < _SINGULAR:
+        raise NotSmoothError("rigid joints hold a motion twice, or what moves has no mass")
 
 
 def _first_snapshots(

@@ -42,7 +42,8 @@ _ENLARGED = 1.4
 _MOST = 2500  # nodes
 _SLACK = 0.2  # allowed, of what remains of S, whose eigenvalues are about 1 and -1
 _SHARPEST = 1e-6  # of the same, below which it is not made smaller
-_ROUNDING = 1e-7
+_ROUNDING = 2e-7
+_ZERO = 1e-10  # of eigenvalues of S with rows of unit size
 _FLOOR = 1e-9  # of the largest eigenvalue of S: those of redundant rigid joints are smaller
 _CHANGES = 0.7  # of a pivot that is eliminated, at most: well away from zero, it leaves smooth what remains
 _LAST, _LEFT_OUT = 2, 3.0  # terms along an axis that count so many times, for those left out
@@ -232,6 +233,6 @@ def _held_out(
     errors = as_frobenius(rest.packed(S) - found.reader(listed)(0, len(some)).T)
     scale = 1.0 / np.sqrt(np.abs(S).max(axis=1))
     spectra = np.linalg.eigvalsh(S * scale[:, :, None] * scale[:, None, :])
-    exact, most = below - (spectra < -_ROUNDING).sum(axis=1), found.at_most(listed)(0, len(some))
+    exact, most = below - (spectra < -_ZERO).sum(axis=1), found.at_most(listed)(0, len(some))
     holds = np.all(np.linalg.norm(errors, axis=1) <= found.slack) and np.all((most >= exact) | (most < 0))
     return bool(holds), bool(np.mean(most == exact) > _SURE)

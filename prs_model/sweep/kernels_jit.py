@@ -17,7 +17,7 @@ IntArray = NDArray[np.int64]
 _WIDTH = 32
 _NARROW = 8  # the same for elimination
 _SWEEPS = 12
-_PIVOT = 1e-7  # of the largest entry: elimination loses no more digits than that
+_PIVOT = 1e-8  # of the largest entry: elimination loses no more digits than that
 _CONVERGED = 1e-12  # of the largest diagonal entry, of what is left beside the diagonals
 
 

@@ -51,12 +51,19 @@ class RitzAtPoses:
     def at(
         self, machine: Machine, configurations: Configurations, count: int, kernels: Any = plain
     ) -> tuple[FloatArray, FloatArray, BoolArray]:
-        """`frequencies` in configurations that all exist, limits left aside."""
+        """`frequencies` in configurations that all exist, limits left aside; none is complete where S is singular."""
         parts = [part(configurations, slice(start, start + _CHUNK)) for start in range(0, len(configurations), _CHUNK)]
         duals = (dual_assembly(machine.description, machine.parts, machine.joints, each) for each in parts)
-        found = [self.frequencies(dual, count, kernels) for dual in duals]
+        found = [self._or_nothing(dual, count, kernels) for dual in duals]
         frequencies, bounds, complete = (np.concatenate(each) for each in zip(*found, strict=True))
         return frequencies, bounds, complete
+
+    def _or_nothing(self, dual: DualSystems, count: int, kernels: Any) -> tuple[FloatArray, FloatArray, BoolArray]:
+        try:
+            return self.frequencies(dual, count, kernels)
+        except np.linalg.LinAlgError:
+            shape = (len(dual), count)
+            return np.zeros(shape), np.full(shape, np.inf), np.zeros(len(dual), dtype=bool)
 
     def frequencies(
         self, dual: DualSystems, count: int, kernels: Any = plain
@@ -64,7 +71,8 @@ class RitzAtPoses:
         """The lowest frequencies (N, count) [Hz], upper bounds of the exact ones; bounds of their relative errors; and
         whether as many Ritz values as eigenvalues lie below the level, all of these among them (N,).
 
-        Bounds hold where that is so, and are infinite elsewhere.
+        Bounds hold where that is so, and are infinite elsewhere. Raises numpy.linalg.LinAlgError where S is singular:
+        rigid joints hold a motion twice, or a body alone has an eigenvalue at the level.
         """
         basis = self.basis
         number, sure = kernels.below(packed(dual, basis.shapes[:, :0], basis.shift, basis.level))
