@@ -83,7 +83,8 @@ def run(options: argparse.Namespace) -> dict[str, Any]:
     poses = _poses(machine, options)
     start = perf_counter()
     with bar(quiet=options.quiet, unit="poses") as progress:
-        progress(0, poses.size)
+        if progress is not None:
+            progress(0, poses.size)
         data = sweep(machine, poses, request, progress, options.store, options.cluster)
     seconds = perf_counter() - start
     for file in options.output:
