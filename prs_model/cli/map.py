@@ -68,8 +68,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> dict[str, Any]:
     """Sweep the workspace, and write where asked."""
+    from ..sweep.drawn.picture import check_drawing
     from ..sweep.files import PICTURES, check_file, save
-    from ..sweep.picture import check_drawing
     from ..sweep.run import sweep
     from ..sweep.summary import summary
 

@@ -14,7 +14,7 @@ from typing import Any, Protocol
 from uuid import uuid4
 
 from ..errors import MissingExtraError, PrsError, short
-from .store import Block
+from .stored.store import Block
 
 try:
     import distributed

@@ -10,8 +10,8 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from .exact import CHUNK, Solved, Solver, part
-from .frames import Frame, in_frame
 from .in_frame import carried, is_possible, quantities_in_frame
+from .interpolated.frames import Frame, in_frame
 from .quantities import DENSE, Block, Labels, blank
 from .reasons import reason_codes
 from .request import Request

@@ -52,7 +52,7 @@ def save(data: xarray.Dataset, path: Path, drawn: str = "frequency") -> None:
     check_file(path)
     suffix = path.suffix.lower()
     if suffix in PICTURES:
-        from .picture import draw
+        from .drawn.picture import draw
 
         draw(data, path, drawn)
         return

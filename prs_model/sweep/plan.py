@@ -12,20 +12,20 @@ from numpy.typing import NDArray
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from .compiled import best
-from .counting import Counter
 from .direct import solved_directly
+from .enclosed.ritz_at_poses import RitzAtPoses
 from .exact import part
 from .in_frame import quantities_in_frame
-from .interpolation import Interpolation
+from .interpolated.counting import Counter
+from .interpolated.interpolation import Interpolation
+from .interpolated.symmetry import Folded, folded
+from .interpolated.tensor import Reader
 from .plan_arrays import Arrays, from_arrays, to_arrays
 from .planning import Found, planned
 from .poses import Poses
 from .quantities import BOUNDED, INTERPOLATED, UNREACHABLE, Block, Labels, blank, labels
 from .reasons import reason_codes
 from .request import Request
-from .ritz_at_poses import RitzAtPoses
-from .symmetry import Folded, folded
-from .tensor import Reader
 
 if TYPE_CHECKING:
     from ..machine import Machine
@@ -68,7 +68,9 @@ class Plan:
         there = np.flatnonzero(block["reason"] == 0)
         if there.size:
             some = part(configurations, there)
-            frequencies, bounds, complete = found.at(self.machine, some, self.request.n_modes, best("kernels_ritz"))
+            frequencies, bounds, complete = found.at(
+                self.machine, some, self.request.n_modes, best("enclosed.kernels_ritz")
+            )
             block["frequency"][there], block["bound"][there] = frequencies, bounds
             block["sure"][there] = complete & (bounds <= self.request.tolerance).all(axis=1)
         block["proof"][:] = BOUNDED

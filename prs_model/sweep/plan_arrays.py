@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .counting import Counting
-from .frames import Frame
-from .interpolation import Interpolation
-from .ritz import RitzBasis
-from .ritz_at_poses import RitzAtPoses
-from .spectral import Axis, Box
-from .symmetry import Symmetry
+from .enclosed.ritz import RitzBasis
+from .enclosed.ritz_at_poses import RitzAtPoses
+from .interpolated.counting import Counting
+from .interpolated.frames import Frame
+from .interpolated.interpolation import Interpolation
+from .interpolated.spectral import Axis, Box
+from .interpolated.symmetry import Symmetry
 
 Arrays = dict[str, NDArray[Any]]
 

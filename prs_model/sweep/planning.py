@@ -12,22 +12,22 @@ import numpy as np
 from ..arrays import FloatArray
 from ..errors import PrsError
 from ..linear_algebra import positive_definite_pencil
-from .basis_at_poses import ritz_at_poses
-from .box_of import MOST_COORDINATES, Shape, shape_of
 from .compiled import best
-from .convergence import Need, need
-from .counting import Counting, counting
+from .enclosed.basis_at_poses import ritz_at_poses
+from .enclosed.ritz_at_poses import RitzAtPoses
 from .exact import Solved, Solver
-from .following import EXTRA, Following, following
 from .in_frame import is_possible, reaches
-from .interpolation import Interpolation
+from .interpolated.box_of import MOST_COORDINATES, Shape, shape_of
+from .interpolated.convergence import Need, need
+from .interpolated.counting import Counting, counting
+from .interpolated.following import EXTRA, Following, following
+from .interpolated.interpolation import Interpolation
+from .interpolated.spectral import Box
+from .interpolated.symmetry import Logarithms, Symmetry, folded, symmetry_of
 from .kernels import as_frobenius
 from .not_smooth import NotSmoothError
 from .poses import Poses
 from .request import Request
-from .ritz_at_poses import RitzAtPoses
-from .spectral import Box
-from .symmetry import Logarithms, Symmetry, folded, symmetry_of
 
 if TYPE_CHECKING:
     from ..machine import Machine
@@ -69,7 +69,7 @@ def planned(machine: Machine, poses: Poses, request: Request, pool: ThreadPoolEx
     if not _worth_a_basis(poses, request):
         return None, why
     try:
-        found, words = ritz_at_poses(request, solver, poses, pool, best("kernels_ritz"))
+        found, words = ritz_at_poses(request, solver, poses, pool, best("enclosed.kernels_ritz"))
         return found, f"{words}; {why}"
     except PrsError as error:
         return None, f"{why}; {error}"

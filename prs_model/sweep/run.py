@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .dataset import to_dataset
-from .identity import identity
-from .lazy import results
 from .plan import Plan, make_plan
 from .poses import Poses
 from .quantities import BOUNDED, DENSE, INTERPOLATED, UNREACHABLE, Block
 from .request import Request
-from .room import check_room
-from .store import Store, blank, opened, piece_length
+from .stored.identity import identity
+from .stored.lazy import results
+from .stored.room import check_room
+from .stored.store import Store, blank, opened, piece_length
 from .threads import workers
 from .truth import check_damping
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..description.units import SI
-from .panels import extreme
+from .drawn.panels import extreme
 
 if TYPE_CHECKING:
     import xarray

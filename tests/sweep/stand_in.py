@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from prs_model.sweep.store import Block, opened
+from prs_model.sweep.stored.store import Block, opened
 
 SHAPE = (8, 80)
 RUN = json.dumps({"machine": "stand-in", "request": {"n_modes": 6}}, sort_keys=True, separators=(",", ":"))

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import prs_model as prs
-from prs_model.sweep.box_of import Shape, shape_of
+from prs_model.sweep.interpolated.box_of import Shape, shape_of
 from prs_model.sweep.poses import poses_of
 from tests.sweep.nasty import nasty
 

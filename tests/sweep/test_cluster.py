@@ -14,7 +14,7 @@ import pytest
 import prs_model as prs
 from prs_model.errors import PrsError
 from prs_model.sweep import cluster as clusters
-from prs_model.sweep.store import Block, Store, opened
+from prs_model.sweep.stored.store import Block, Store, opened
 from tests.sweep.stand_in import RUN, SHAPE, StandIn, evaluated, processes, results
 from tests.sweep.test_store import assert_same
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from prs_model.sweep.convergence import Need, need
-from prs_model.sweep.spectral import Axis
+from prs_model.sweep.interpolated.convergence import Need, need
+from prs_model.sweep.interpolated.spectral import Axis
 
 
 def on_line(axis: Axis) -> np.ndarray:

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 import prs_model as prs
-from prs_model.sweep import counting as module
-from prs_model.sweep.box_of import shape_of
-from prs_model.sweep.counting import Counting, counting
 from prs_model.sweep.exact import Solver
+from prs_model.sweep.interpolated import counting as module
+from prs_model.sweep.interpolated.box_of import shape_of
+from prs_model.sweep.interpolated.counting import Counting, counting
 from prs_model.sweep.not_smooth import NotSmoothError
 from prs_model.sweep.poses import Poses, poses_of
 from tests.sweep.nasty import nasty

@@ -11,8 +11,8 @@ import pytest
 from prs_model import load_machine
 from prs_model.errors import PrsError, UnknownNameError
 from prs_model.sweep.dataset import to_dataset
+from prs_model.sweep.drawn.picture import draw
 from prs_model.sweep.files import check_file, save
-from prs_model.sweep.picture import draw
 from prs_model.sweep.poses import poses_of
 from prs_model.sweep.quantities import blank, labels
 from prs_model.sweep.reasons import reason_codes

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import prs_model as prs
-from prs_model.sweep.frames import Frame, in_frame
+from prs_model.sweep.interpolated.frames import Frame, in_frame
 from prs_model.sweep.low_modes import LowModes, low_modes
 from prs_model.synthesis import Systems, assemble_many
 from tests.verification.gantry import TRAVEL, gantry

@@ -11,7 +11,7 @@ import pytest
 from prs_model import load_machine
 from prs_model.cli import main
 from prs_model.cli.progress import line
-from prs_model.sweep.panels import extreme
+from prs_model.sweep.drawn.panels import extreme
 
 GRID = ["--grid", "x=-2mm:2mm:4", "z=89,90,120mm"]
 

@@ -10,8 +10,8 @@ import pytest
 
 import prs_model as prs
 from prs_model.sweep.exact import CHUNK, Solver, part
+from prs_model.sweep.interpolated.spectral import Axis, Box, on_grid
 from prs_model.sweep.poses import Poses, poses_of
-from prs_model.sweep.spectral import Axis, Box, on_grid
 from tests.sweep.nasty import nasty
 
 COUNT, NODES = 6, 7

@@ -13,16 +13,16 @@ import pytest
 
 import prs_model as prs
 from prs_model.linear_algebra import positive_definite_pencil
-from prs_model.sweep import kernels_ritz
-from prs_model.sweep.basis_at_poses import ritz_at_poses
-from prs_model.sweep.dual_packed import packed
+from prs_model.sweep.enclosed import kernels_ritz
+from prs_model.sweep.enclosed.basis_at_poses import ritz_at_poses
+from prs_model.sweep.enclosed.dual_packed import packed
+from prs_model.sweep.enclosed.ritz import RitzBasis, leading_shapes
+from prs_model.sweep.enclosed.ritz_at_poses import RitzAtPoses
 from prs_model.sweep.exact import Solver, part
 from prs_model.sweep.low_modes import low_modes
 from prs_model.sweep.not_smooth import NotSmoothError
 from prs_model.sweep.poses import Poses
 from prs_model.sweep.request import Request
-from prs_model.sweep.ritz import RitzBasis, leading_shapes
-from prs_model.sweep.ritz_at_poses import RitzAtPoses
 from prs_model.synthesis import assemble_many
 from prs_model.synthesis.dual import DualSystems, dual_assembly
 from tests.sweep.nasty import nasty
@@ -87,7 +87,7 @@ def exact_at(machine: prs.Machine, poses: np.ndarray, count: int = COUNT) -> np.
 @pytest.fixture(scope="module")
 def compiled() -> ModuleType:
     pytest.importorskip("numba", reason="compiled kernels come with the extra `fast`")
-    from prs_model.sweep import kernels_ritz_jit
+    from prs_model.sweep.enclosed import kernels_ritz_jit
 
     return kernels_ritz_jit
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from prs_model.sweep.spectral import Axis, Box, on_grid
+from prs_model.sweep.interpolated.spectral import Axis, Box, on_grid
 
 TURN = 2.0 * np.pi
 X = Axis("chebyshev", -0.3, 1.1, 7)

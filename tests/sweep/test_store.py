@@ -17,13 +17,13 @@ import xarray
 
 import prs_model as prs
 from prs_model.errors import PrsError
-from prs_model.sweep import store as stores
-from prs_model.sweep.identity import identity
-from prs_model.sweep.lazy import lazy
 from prs_model.sweep.plan import Plan
 from prs_model.sweep.poses import poses_of
 from prs_model.sweep.request import Request
-from prs_model.sweep.store import Store, opened, piece_length
+from prs_model.sweep.stored import store as stores
+from prs_model.sweep.stored.identity import identity
+from prs_model.sweep.stored.lazy import lazy
+from prs_model.sweep.stored.store import Store, opened, piece_length
 from tests.sweep.stand_in import RUN, SHAPE, StandIn, evaluated, processes, results, run, run_killed_before_renaming
 
 SIZE = SHAPE[0] * SHAPE[1]
@@ -303,7 +303,7 @@ def test_large_results_stay_where_they_are(tmp_path: Path, monkeypatch: pytest.M
     axes = {"z": np.linspace(0.089, 0.091, 3), "x": np.linspace(0.0, 1e-3, 4)}
     asked: Any = {**axes, "n_modes": 3, "quantities": ("frequency", "static_compliance", "identity")}
     expected = machine.sweep(**asked)
-    monkeypatch.setattr("prs_model.sweep.lazy.IN_MEMORY", 0)
+    monkeypatch.setattr("prs_model.sweep.stored.lazy.IN_MEMORY", 0)
     found = machine.sweep(**asked, store=tmp_path / "run")
     assert found["static_compliance"].chunks is not None
     found.to_netcdf(tmp_path / "map.nc", engine="h5netcdf")

@@ -23,15 +23,15 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
-from ..reduction import Elements
-from ..synthesis import DualSystems
-from . import kernels as plain
+from ...arrays import FloatArray, IntArray
+from ...reduction import Elements
+from ...synthesis import DualSystems
+from .. import kernels as plain
+from ..exact import Solver
+from ..kernels import as_frobenius
+from ..not_smooth import NotSmoothError
+from ..poses import Poses
 from .box_of import Shape
-from .exact import Solver
-from .kernels import as_frobenius
-from .not_smooth import NotSmoothError
-from .poses import Poses
 from .spectral import Box
 from .tensor import Tensor
 

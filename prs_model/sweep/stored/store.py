@@ -27,10 +27,10 @@ from zipfile import ZipFile
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import PrsError, short
-from ..modes.figure_file import told
-from ..reduction.recipe import differences, fingerprint
-from ..reduction.storage import whole
+from ...errors import PrsError, short
+from ...modes.figure_file import told
+from ...reduction.recipe import differences, fingerprint
+from ...reduction.storage import whole
 from .lock import LOCK, locked
 
 FORMAT = "prs-model sweep"

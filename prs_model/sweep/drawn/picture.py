@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import FloatArray
-from ..description.units import Dimension
-from ..errors import PrsError, UnknownNameError
-from ..modes.figure_file import matplotlib_figure, write_figure
-from ..readable import readable
+from ...arrays import FloatArray
+from ...description.units import Dimension
+from ...errors import PrsError, UnknownNameError
+from ...modes.figure_file import matplotlib_figure, write_figure
+from ...readable import readable
 from .contours import COLOURS, add_bar, fill, halo, mark
 from .panels import DRAWABLE, Panel, panels_of
 

@@ -9,8 +9,8 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import FloatArray, IntArray
-from ..synthesis.dual import DualSystems
+from ...arrays import FloatArray, IntArray
+from ...synthesis.dual import DualSystems
 from .kernels_ritz import Packed
 
 _Groups = tuple[tuple[int, ...], ...]

@@ -14,7 +14,7 @@ from typing import Literal
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ...arrays import FloatArray, IntArray
 
 Kind = Literal["chebyshev", "fourier", "given"]
 

@@ -13,9 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import FloatArray
+from ...arrays import FloatArray
+from ..poses import Poses
 from .box_of import Shape
-from .poses import Poses
 
 _TURN = 2.0 * np.pi
 _TRIALS = 8  # poses that are compared with their images

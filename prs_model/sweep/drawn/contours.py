@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import FloatArray
+from ...arrays import FloatArray
 from .panels import Panel
 
 COLOURS = "cividis"  # the same to the colour-blind

@@ -9,16 +9,16 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
-from ..linear_algebra import slowest_rate
+from ...arrays import FloatArray, IntArray
+from ...linear_algebra import slowest_rate
+from ..exact import Solved, Solver
+from ..not_smooth import NotSmoothError
+from ..poses import Poses
+from ..request import Request
+from ..rounding import rounding
 from . import kernels_ritz as plain
-from .exact import Solved, Solver
-from .not_smooth import NotSmoothError
-from .poses import Poses
-from .request import Request
 from .ritz import RitzBasis, leading_shapes
 from .ritz_at_poses import RitzAtPoses
-from .rounding import rounding
 
 _FIRST, _FURTHER, _ROUNDS = 96, 64, 4  # poses whose shapes a basis is made of
 _HELD_OUT = 192  # poses at which its bounds are looked at

@@ -7,7 +7,7 @@ from math import ceil, log
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ...arrays import FloatArray
 from .spectral import Axis
 
 _UNSEEN = {

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..arrays import FloatArray
-from .poses import Poses
+from ...arrays import FloatArray
+from ..poses import Poses
 from .spectral import Axis, Box, Kind
 
 if TYPE_CHECKING:
-    from ..kinematics import Kinematics
+    from ...kinematics import Kinematics
 
 MOST_COORDINATES = 3  # that a tensor of nodes can have
 _TURN = 2.0 * np.pi

@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .. import __version__
-from ..reduction.recipe import file_hash
-from ..reduction.store import provenance
-from .request import Request
+from ... import __version__
+from ...reduction.recipe import file_hash
+from ...reduction.store import provenance
+from ..request import Request
 
 if TYPE_CHECKING:
-    from ..arrays import FloatArray
-    from ..machine import Machine
-    from .poses import Poses
+    from ...arrays import FloatArray
+    from ...machine import Machine
+    from ..poses import Poses
 
 VERSION = 2  # raised when a sweep changes its results
 

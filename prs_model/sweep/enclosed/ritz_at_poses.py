@@ -22,16 +22,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..arrays import BoolArray, FloatArray
-from ..synthesis.dual import DualSystems, dual_assembly
+from ...arrays import BoolArray, FloatArray
+from ...synthesis.dual import DualSystems, dual_assembly
+from ..exact import part
 from . import kernels_ritz as plain
 from .dual_packed import packed
-from .exact import part
 from .ritz import RitzBasis
 
 if TYPE_CHECKING:
-    from ..kinematics import Configurations
-    from ..machine import Machine
+    from ...kinematics import Configurations
+    from ...machine import Machine
 
 _CHUNK = 256  # configurations at once: 30 MB at 160 coordinates
 

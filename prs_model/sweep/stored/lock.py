@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from ..errors import PrsError, short
+from ...errors import PrsError, short
 
 LOCK = "lock"
 

@@ -9,8 +9,8 @@ from functools import cached_property
 
 import numpy as np
 
-from ..arrays import FloatArray
-from .poses import Poses
+from ...arrays import FloatArray
+from ..poses import Poses
 from .spectral import Box, Terms, on_grid
 
 Reader = Callable[[int, int], FloatArray]

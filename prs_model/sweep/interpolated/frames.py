@@ -16,9 +16,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import FloatArray
-from ..synthesis.batch import Systems
-from .low_modes import LowModes
+from ...arrays import FloatArray
+from ...synthesis.batch import Systems
+from ..low_modes import LowModes
 
 
 @dataclass(frozen=True, eq=False)

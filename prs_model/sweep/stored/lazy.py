@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..errors import MissingExtraError
+from ...errors import MissingExtraError
 from .store import Layout, Store, blank
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ...arrays import FloatArray
 
 if TYPE_CHECKING:
     import xarray

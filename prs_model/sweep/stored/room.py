@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..errors import PrsError
-from .poses import Poses
-from .quantities import labels, variables
-from .request import Request
+from ...errors import PrsError
+from ..poses import Poses
+from ..quantities import labels, variables
+from ..request import Request
 
 if TYPE_CHECKING:
-    from ..machine import Machine
+    from ...machine import Machine
 
 
 def check_room(machine: Machine, poses: Poses, request: Request) -> None:

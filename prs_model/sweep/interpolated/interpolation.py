@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
-from . import kernels as plain
+from ...arrays import FloatArray, IntArray
+from .. import kernels as plain
 from .counting import Counting
 from .frames import Frame
 from .symmetry import Symmetry

@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import FloatArray
-from .exact import Solved, Solver
+from ...arrays import FloatArray
+from ..exact import Solved, Solver
+from ..in_frame import carried, reaches
+from ..not_smooth import NotSmoothError
+from ..request import Request
 from .frames import Frame, in_frame
-from .in_frame import carried, reaches
 from .interpolation import Interpolation
-from .not_smooth import NotSmoothError
-from .request import Request
 
 EXTRA = 9  # modes above those asked for, among which a gap is sought
 _LEAST_GAP = 1.04  # ratio of eigenvalues above and below it

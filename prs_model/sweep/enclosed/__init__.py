@@ -1,0 +1,1 @@
+"""Frequencies at any poses in one basis, bounded from both sides."""

@@ -1,0 +1,1 @@
+"""Maps by interpolation: smooth matrices at nodes, and modes counted in between."""
