@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeVar
@@ -74,6 +74,12 @@ class Solver:
             raise found.errors[int(np.flatnonzero(np.isnan(found.q).any(axis=1))[0])]
         size = min(CHUNK, max(_SMALLEST, -(-len(poses) // cores())))
         return [part(found, slice(start, start + size)) for start in range(0, len(poses), size)]
+
+
+def eigenvalues_of(solved: Sequence[Solved]) -> FloatArray:
+    """(N, k) of all of them, as many as each has."""
+    fewest = min(each.modes.eigenvalues.shape[1] for each in solved)
+    return np.concatenate([each.modes.eigenvalues[:, :fewest] for each in solved])
 
 
 def part(configurations: Configurations, some: slice | IntArray) -> Configurations:

@@ -17,7 +17,7 @@ IntArray = NDArray[np.int64]
 _WIDTH = 32
 _NARROW = 8  # the same for elimination
 _SWEEPS = 12
-_PIVOT = 1e-8  # of the largest entry: elimination loses no more digits than that
+_PIVOT = 1e-8  # of the largest entry that was met: elimination loses no more digits than that
 _CONVERGED = 1e-12  # of the largest diagonal entry, of what is left beside the diagonals
 
 
@@ -107,6 +107,7 @@ def negatives(packed: FloatArray, p: int, slack: float) -> IntArray:
                 row = i * (i + 1) // 2
                 for k in range(_NARROW):
                     factor[k] = a[row + j, k] / a[diagonal, k]
+                    size[k] = max(size[k], abs(a[row + j, k]))
                 for h in range(j + 1, i + 1):
                     below = h * (h + 1) // 2 + j
                     for k in range(_NARROW):

@@ -10,7 +10,7 @@ Modes feel each other little or not at all, and their frequencies are known:
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import pi
+from math import pi, sqrt
 from pathlib import Path
 
 import numpy as np
@@ -70,15 +70,19 @@ output: {{node: arm.hub, frame: arm}}
 
 def nasty(folder: Path, row: Sequence[float], plunger: float) -> prs.Machine:
     """Write the machine's folder and load it. row: frequencies of the masses [Hz]; plunger: its highest one."""
+    return _written(folder, _URDF, _MACHINE, row, plunger, _ARM)
+
+
+def _written(folder: Path, urdf: str, machine: str, row: Sequence[float], plunger: float, arm: float) -> prs.Machine:
     names = [f"n{i}" for i in range(len(row))]
     k = [(2.0 * pi * each) ** 2 for each in row]
     springs = (
         f"{{between: [ground, {name}], stiffness: {{ux: {each!r}, uy: {_STIFF}, uz: {_STIFF}}}}}"
         for name, each in zip(names, k, strict=True)
     )
-    text = _MACHINE.format(
+    text = machine.format(
         inertia=_INERTIA,
-        arm=_ARM,
+        arm=arm,
         stiff=_STIFF,
         soft=(2.0 * pi * LOOSE) ** 2,
         table=_INERTIA * (2.0 * pi * TABLE) ** 2,
@@ -87,9 +91,36 @@ def nasty(folder: Path, row: Sequence[float], plunger: float) -> prs.Machine:
         masses=", ".join(f"{name}: {{mass: 1}}" for name in names),
         springs=", ".join(springs),
     )
-    (folder / "nasty.urdf").write_text(_URDF)
+    (folder / "nasty.urdf").write_text(urdf)
     (folder / "machine.yaml").write_text(text)
     return prs.load_machine(folder)
+
+
+_POLAR_URDF = """<robot name="nasty">
+  <link name="base"/><link name="disc"/><link name="slider"/><link name="arm"/>
+  <joint name="turn" type="continuous"><parent link="base"/><child link="disc"/><axis xyz="0 0 1"/></joint>
+  <joint name="slide" type="prismatic"><parent link="disc"/><child link="slider"/><axis xyz="1 0 0"/>
+    <limit lower="-0.00001" upper="3" effort="1" velocity="1"/></joint>
+  <joint name="wrist" type="continuous"><parent link="slider"/><child link="arm"/><axis xyz="0 0 1"/></joint>
+</robot>
+"""
+_POLAR = {
+    "x: [0, 1], y: [0, 1]": "x: [-1, 1], y: [0.0001, 1]",
+    "slide_x: 0.5, slide_y: 0.5, turn: 0": f"slide: {sqrt(0.5)!r}, turn: {pi / 4!r}, wrist: {-pi / 4!r}",
+    "{{urdf: slide_x, ": "{{urdf: slide, ",
+    "{{urdf: slide_y, rigid: true, drive: {{kind: constant, stiffness:": (
+        "{{urdf: wrist, rigid: true, drive: {{kind: constant, rotational_stiffness:"
+    ),
+}
+
+
+def polar(folder: Path, row: Sequence[float], plunger: float) -> prs.Machine:
+    """The same, the arm on a slide on the table, which swings round within millimetres as the arm passes the axis."""
+    text = _MACHINE
+    for old, new in _POLAR.items():
+        assert old in text
+        text = text.replace(old, new)
+    return _written(folder, _POLAR_URDF, text, row, plunger, arm=1e-6)
 
 
 def table_frequency(x: np.ndarray, y: np.ndarray) -> np.ndarray:

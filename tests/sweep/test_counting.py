@@ -11,7 +11,7 @@ import pytest
 
 import prs_model as prs
 from prs_model.sweep.exact import Solver
-from prs_model.sweep.interpolated import counting as module
+from prs_model.sweep.interpolated import pivots
 from prs_model.sweep.interpolated.box_of import shape_of
 from prs_model.sweep.interpolated.counting import Counting, counting
 from prs_model.sweep.not_smooth import NotSmoothError
@@ -89,7 +89,7 @@ def test_pivots_of_one_sign_are_eliminated(
     """With and without elimination the counts are the same; here it takes all rows."""
     poses = poses_of(head, {"nutation": np.linspace(0.0, 0.5, 20), "precession": np.linspace(0.0, 1.0, 30)})
     few = made(head, poses, LEVEL, pool)
-    monkeypatch.setattr(module, "_CHANGES", 0.0)
+    monkeypatch.setattr(pivots, "_CHANGES", 0.0)
     every = made(head, poses, LEVEL, pool)
     assert every.size == 120
     assert few.size == 0

@@ -12,7 +12,7 @@ import prs_model as prs
 from prs_model.sweep.exact import CHUNK, Solver, part
 from prs_model.sweep.interpolated.spectral import Axis, Box, on_grid
 from prs_model.sweep.poses import Poses, poses_of
-from tests.sweep.nasty import nasty
+from tests.sweep.nasty import nasty, polar
 
 COUNT, NODES = 6, 7
 
@@ -87,3 +87,22 @@ def test_the_map_is_within_its_bounds_where_an_unguarded_method_is_not(name: str
     assert bound.max() <= 1e-6
     if case.interpolated is not None:
         assert (data["proof"].values == (1 if case.interpolated else 2)).all()
+
+
+@pytest.mark.parametrize("distance", [1e-2, 5e-2])
+def test_what_happens_within_millimetres_between_nodes_is_noticed(distance: float, tmp_path: Path) -> None:
+    """A polar arm passes the axis: its table turns by half a turn there, and the plunger is nearly loose on the way.
+
+    At the nodes nothing moves but the turn itself, and frequencies are those of the row of masses.
+    """
+    machine = polar(tmp_path, ROW, 400.0)
+    grid = {"x": np.linspace(-1.0, 0.73, 4001), "y": [distance]}
+    data = machine.sweep(**grid, n_modes=COUNT)
+    poses = poses_of(machine, grid)
+    near = np.flatnonzero(np.abs(grid["x"]) < 0.2 * distance)[::2]
+    for i in (*near.tolist(), 0, 1500, 3000, 4000):
+        truth = modes_at(machine, poses.block(i, i + 1)[0])
+        found = data["frequency"].values.reshape(-1, COUNT)[i]
+        assert (np.abs(found / truth - 1.0) <= data["bound"].values.reshape(-1, COUNT)[i] + 1e-9).all()
+    lowest = data["frequency"].values.reshape(-1, COUNT)[:, 0]
+    assert lowest.min() < 0.9 * np.median(lowest)

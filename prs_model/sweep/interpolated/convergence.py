@@ -8,12 +8,8 @@ from math import ceil, log
 import numpy as np
 
 from ...arrays import FloatArray
-from .spectral import Axis
+from .spectral import LAST, Axis
 
-_UNSEEN = {
-    "chebyshev": 2,
-    "fourier": 8,
-}  # last terms that have to be small; of like limbs every n-th order is all there is
 _SLOWEST, _FASTEST = 0.85, 0.2  # fall that is reckoned with
 
 
@@ -36,7 +32,7 @@ def need(axis: Axis, matrices: FloatArray, most: float, beyond: float) -> Need |
     """
     sizes = np.linalg.norm(axis.transform @ matrices, axis=2).max(axis=0)
     rest = np.cumsum(sizes[::-1])[::-1]
-    last = len(rest) - _UNSEEN[axis.kind]
+    last = len(rest) - LAST[axis.kind]
     first = int(np.flatnonzero(rest < most)[0]) if rest[last] < most else last
     before = first // 2
     fall = (rest[first] / rest[before]) ** (1.0 / (first - before)) if first else _FASTEST

@@ -5,13 +5,11 @@ smooth in the pose as the joints' values are: a mode cannot hide between the nod
 between those of the modes themselves. At each pose the eigenvalues are counted by LDL^T of S + d, where d is more than
 the interpolant may be off, so that the count is never too small.
 
-Row after row, S is eliminated at the nodes as long as the pivot is nowhere zero: with coefficients c_k of terms t_k,
-none of which exceeds one,
+What can be eliminated of S once for all poses is (see `pivots`); often no row is left, and the number is the same all
+over the box. What is left otherwise is interpolated and counted at every pose.
 
-    pivot(x) = c_0 + sum c_k t_k(x),   sum |c_k| < |c_0|,
-
-the pivot has the sign of c_0 at every pose. Often no row is left, and the number is the same all over the box. What
-is left otherwise is interpolated and counted at every pose.
+That S is as smooth as its nodes make believe is tested on the joints' values, from which all of it follows, at very
+many poses, and on S itself at a few.
 """
 
 from __future__ import annotations
@@ -32,6 +30,8 @@ from ..kernels import as_frobenius
 from ..not_smooth import NotSmoothError
 from ..poses import Poses
 from .box_of import Shape
+from .joint_values import joint_values
+from .pivots import Rest
 from .spectral import Box
 from .tensor import Tensor
 
@@ -44,12 +44,9 @@ _SLACK = 0.2  # allowed, of what remains of S, whose eigenvalues are about 1 and
 _SHARPEST = 1e-6  # of the same, below which it is not made smaller
 _ROUNDING = 2e-7
 _ZERO = 1e-10  # of eigenvalues of S with rows of unit size
-_FLOOR = 1e-9  # of the largest eigenvalue of S: those of redundant rigid joints are smaller
-_CHANGES = 0.7  # of a pivot that is eliminated, at most: well away from zero, it leaves smooth what remains
-_LAST, _LEFT_OUT = 2, 3.0  # terms along an axis that count so many times, for those left out
 _AWAY = 1.2  # factor by which eigenvalues of a part that changes keep away from the level
-_HELD_OUT = 8
-_SURE = 0.7  # share of the poses held out
+_FEW = 8  # poses at which counts are tried
+_SURE = 0.7  # share of the few poses
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,29 +75,8 @@ class Counting(Tensor):
         return counts
 
 
-@dataclass(frozen=True, eq=False)
-class _Rest:
-    """What remains of S: the rows `kept` after those `eliminated` in turn, turned by T (r, r) to its axes."""
-
-    eliminated: tuple[int, ...]
-    kept: IntArray
-    turned: FloatArray
-
-    def packed(self, S: FloatArray) -> FloatArray:
-        """(N, r (r + 1) / 2), of S (N, c, c)."""
-        S = S.copy()
-        for row in self.eliminated:
-            _eliminate(S, row)
-        return self.packed_rest(S)
-
-    def packed_rest(self, S: FloatArray) -> FloatArray:
-        """The same, of S (N, c, c) after elimination."""
-        rows, columns = np.tril_indices(len(self.kept))
-        return np.asarray((self.turned.T @ S[:, self.kept[:, None], self.kept] @ self.turned)[:, rows, columns])
-
-
 def counting(solver: Solver, shape: Shape, poses: Poses, level: float, pool: ThreadPoolExecutor) -> Counting:
-    """Made on a box of its own, with more nodes until some of `poses` are counted without doubt.
+    """Made on a box of its own, with more nodes until some of `poses` are counted rightly and without doubt.
 
     Raises NotSmoothError where a part alone has an eigenvalue at the level, or too many nodes would be needed.
     """
@@ -108,29 +84,34 @@ def counting(solver: Solver, shape: Shape, poses: Poses, level: float, pool: Thr
         _ROUND if turns else _ACROSS if shape.mirror is not None and k == shape.mirror[0] else _FEWEST
         for k, turns in enumerate(shape.periodic)
     )
+    kinematics = solver.machine.kinematics
+    joints = joint_values(kinematics, poses)
+    trials = _trials(solver, joints.poses, level, pool)
     wanted, best = _SLACK, None
     while len((box := shape.box(counts)).solved) <= min(_MOST, poses.size / 2):
         found, rest, tails = _on(box, solver, level, pool)
-        if found.slack <= wanted:
-            holds, sharp = _held_out(found, rest, solver, poses, pool)
-            if holds and (sharp or found.slack <= _SHARPEST):
+        at_nodes = kinematics.solve_batch(box.poses()).q
+        if found.slack <= wanted and joints.are_met_by(box, at_nodes) and trials.hold(found, rest):
+            if found.slack <= _SHARPEST or trials.are_told_by(found):
                 return found
-            if holds:
-                wanted, best = 0.1 * found.slack, found
-        counts = tuple(
-            int(np.ceil(count * _ENLARGED)) if tail > 0.2 * max(tails) else count
+            wanted, best = 0.1 * found.slack, found
+        grown = tuple(
+            int(np.ceil(count * _ENLARGED)) if tail >= 0.2 * max(tails) else count
             for count, tail in zip(box.shape, tails, strict=True)
         )
+        if shape.box(grown).shape == box.shape:
+            break
+        counts = grown
     if best is None:
-        raise NotSmoothError(f"{len(box.solved)} nodes would be needed to count modes")
+        raise NotSmoothError(f"{len(box.solved)} nodes do not suffice to count modes")
     return best
 
 
-def _on(box: Box, solver: Solver, level: float, pool: ThreadPoolExecutor) -> tuple[Counting, _Rest, tuple[float, ...]]:
+def _on(box: Box, solver: Solver, level: float, pool: ThreadPoolExecutor) -> tuple[Counting, Rest, tuple[float, ...]]:
     """With the nodes of a box; what remains of S; and its error that is due to each axis."""
     S, below = _dual(solver, box.poses(), level, pool)
-    rest, negative = _eliminate_steady(box, S)
-    nodes = box.unfold(rest.packed_rest(S))
+    rest, remains, negative = Rest.at_nodes(box, S)
+    nodes = box.unfold(remains)
     tails = box.tail(as_frobenius(nodes))
     slack = 2.0 * sum(tails) + _ROUNDING
     return Counting(box, nodes, 0.1 * slack, level, int(below[0]) - negative, len(rest.kept), slack), rest, tails
@@ -161,78 +142,29 @@ def _keep_away(elements: Iterable[Elements], level: float) -> bool:
     return all(np.array_equal(below.sum(axis=1), above.sum(axis=1)) for below, above in counts)
 
 
-def _eliminate_steady(box: Box, S: FloatArray) -> tuple[_Rest, int]:
-    """What remains of S (N, c, c), changed in place, and how many of the pivots were negative; the steadiest first."""
-    left = np.arange(S.shape[1])
-    eliminated: list[int] = []
-    negative = 0
-    while len(left):
-        changes = _changes(box, S[:, left, left])
-        steadiest = int(np.argmin(changes))
-        if changes[steadiest] >= _CHANGES:
-            break
-        row = int(left[steadiest])
-        negative += int(S[0, row, row] < 0.0)
-        _eliminate(S, row)
-        eliminated.append(row)
-        left = np.delete(left, steadiest)
-    mean = np.mean(S[:, left[:, None], left], axis=0)
-    return _Rest(tuple(eliminated), left, _to_ones(mean)), negative
+@dataclass(frozen=True, eq=False)
+class _Trials:
+    """Some poses with S (n, c, c) and the exact counts (n,)."""
+
+    poses: Poses
+    S: FloatArray
+    exact: IntArray
+
+    def hold(self, found: Counting, rest: Rest) -> bool:
+        """Whether what remains of S is within the slack, and no count too small."""
+        errors = as_frobenius(rest.packed(self.S) - found.reader(self.poses)(0, self.poses.size).T)
+        most = found.at_most(self.poses)(0, self.poses.size)
+        return bool(np.all(np.linalg.norm(errors, axis=1) <= found.slack) and np.all((most >= self.exact) | (most < 0)))
+
+    def are_told_by(self, found: Counting) -> bool:
+        """Whether nearly all counts are exact."""
+        return bool(np.mean(found.at_most(self.poses)(0, self.poses.size) == self.exact) > _SURE)
 
 
-def _eliminate(S: FloatArray, row: int) -> None:
-    """One row of S (N, c, c), in place: the Schur complement in those coupled to it, and zeros in its own."""
-    beside, pivot = S[:, row].copy(), S[:, row, row].copy()
-    beside[:, row] = 0.0
-    coupled = np.flatnonzero(np.any(beside, axis=0))
-    each = beside[:, coupled]
-    S[:, coupled[:, None], coupled] -= each[:, :, None] * (each / pivot[:, None])[:, None, :]
-    S[:, row] = 0.0
-    S[:, :, row] = 0.0
-
-
-def _changes(box: Box, values: FloatArray) -> FloatArray:
-    """How much each of k values (N, k) at the nodes changes over the box, for its mean: below 1 it is nowhere zero.
-
-    The last terms count for those that are left out. Infinite where the mean has not one sign at all given nodes.
-    """
-    sizes = box.coefficients(box.unfold(values))
-    smooth = tuple(k for k, axis in enumerate(box.axes) if axis.given is None)
-    first = tuple(0 if k in smooth else slice(None) for k in range(len(box.axes)))
-    mean = sizes[first].reshape(-1, values.shape[1])
-    sizes = np.abs(sizes)
-    sizes[first] = 0.0
-    for k in smooth:
-        last = tuple(slice(-_LAST, None) if k == i else slice(None) for i in range(len(box.axes)))
-        sizes[last] *= _LEFT_OUT
-    changes = sizes.sum(axis=smooth).reshape(-1, values.shape[1])
-    one_sign = np.abs(np.sign(mean).sum(axis=0)) == len(mean)
-    return np.where(one_sign, (changes / np.where(one_sign, np.abs(mean), 1.0)).max(axis=0), np.inf)
-
-
-def _to_ones(matrix: FloatArray) -> FloatArray:
-    """T (b, b) with eigenvalues 1 and -1 of T^T A T, or near zero where A is singular."""
-    scale = 1.0 / np.sqrt(np.maximum(np.linalg.norm(matrix, axis=1), np.finfo(float).tiny))
-    values, vectors = np.linalg.eigh(matrix * np.outer(scale, scale))
-    sizes = np.maximum(np.abs(values), _FLOOR * np.abs(values).max(initial=0.0))
-    return np.asarray(scale[:, None] * vectors / np.sqrt(sizes))
-
-
-def _held_out(
-    found: Counting, rest: _Rest, solver: Solver, poses: Poses, pool: ThreadPoolExecutor
-) -> tuple[bool, bool]:
-    """Of some of the poses: whether what remains of S is within the slack and the count not too small, and whether this
-    is exact at most of them."""
-    numbers = np.random.default_rng(5).choice(poses.size, min(_HELD_OUT, poses.size), replace=False)
-    some = poses.at(np.sort(numbers))
-    some = some[solver.machine.kinematics.solve_batch(some).reachable]
-    if not len(some):
-        return True, True
-    S, below = _dual(solver, some, found.level, pool)
-    listed = Poses(poses.names, (), some)
-    errors = as_frobenius(rest.packed(S) - found.reader(listed)(0, len(some)).T)
+def _trials(solver: Solver, poses: Poses, level: float, pool: ThreadPoolExecutor) -> _Trials:
+    """Some of the poses, all of which are within reach."""
+    some = poses.at(np.random.default_rng(5).choice(poses.size, min(_FEW, poses.size), replace=False))
+    S, below = _dual(solver, some, level, pool)
     scale = 1.0 / np.sqrt(np.abs(S).max(axis=1))
     spectra = np.linalg.eigvalsh(S * scale[:, :, None] * scale[:, None, :])
-    exact, most = below - (spectra < -_ZERO).sum(axis=1), found.at_most(listed)(0, len(some))
-    holds = np.all(np.linalg.norm(errors, axis=1) <= found.slack) and np.all((most >= exact) | (most < 0))
-    return bool(holds), bool(np.mean(most == exact) > _SURE)
+    return _Trials(Poses(poses.names, (), some), S, below - (spectra < -_ZERO).sum(axis=1))

@@ -18,8 +18,11 @@ from ...arrays import FloatArray, IntArray
 
 Kind = Literal["chebyshev", "fourier", "given"]
 
-_LAST = 2  # coefficients per axis whose size says how well the rest converged
-_ORDERS = 8  # terms of four orders of a periodic coordinate
+LAST = {"chebyshev": 2, "fourier": 8, "given": 0}
+"""Terms along an axis whose size says how well the rest converged; of like limbs only every n-th order may be there."""
+
+_LAST = LAST["chebyshev"]
+_ORDERS = LAST["fourier"]  # terms of four orders
 
 
 @dataclass(frozen=True, eq=False)
