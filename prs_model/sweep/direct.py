@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -81,5 +80,5 @@ def _chunk(solver: Solver, request: Request, configurations: Configurations, fra
 
 def _seen_in(frame: Frame, solved: Solved) -> FloatArray:
     """W^T M U (m, p, p): the modes in the smooth frame."""
-    frames = in_frame(replace(frame, level=None), solved.systems, solved.modes).frames
+    frames = in_frame(frame, solved.systems, solved.modes).frames
     return np.asarray(frames.swapaxes(1, 2) @ (solved.systems.mass @ solved.modes.shapes))

@@ -30,7 +30,7 @@ def at_poses(tmp_path_factory: pytest.TempPathFactory) -> tuple[Systems, LowMode
 @pytest.mark.parametrize("shift", [0.0, -1e6])
 def test_eigenvalues_in_the_frame_are_the_exact_ones(at_poses: tuple[Systems, LowModes], shift: float) -> None:
     systems, modes = at_poses
-    frame = Frame(modes.shapes[0][:, :5], shift, None)
+    frame = Frame(modes.shapes[0][:, :5], shift)
     found = in_frame(frame, systems, modes)
     values = np.exp(np.linalg.eigvalsh(found.logarithms)) + shift
     np.testing.assert_allclose(values, modes.eigenvalues[:, :5], rtol=1e-11)
@@ -45,7 +45,7 @@ def test_eigenvalues_in_the_frame_are_the_exact_ones(at_poses: tuple[Systems, Lo
 def test_a_shape_that_is_lost_shows_in_the_alignment(at_poses: tuple[Systems, LowModes]) -> None:
     systems, modes = at_poses
     others = LowModes(modes.eigenvalues[:, 1:], modes.shapes[:, :, 1:])
-    frame = Frame(modes.shapes[0][:, :4], 0.0, None)
+    frame = Frame(modes.shapes[0][:, :4], 0.0)
     assert in_frame(frame, systems, others).alignment[0] < 1e-9
 
 
@@ -54,7 +54,7 @@ def test_the_frame_does_not_depend_on_the_basis_within_a_pair() -> None:
     systems, modes = solved(prs.load_machine("hexapod"), np.array([[0.0, 0.0, 0.09, 0.0, 0.0, 0.0]]))
     assert modes.eigenvalues[0, 1] == pytest.approx(modes.eigenvalues[0, 0], rel=1e-9)
     home = np.linalg.qr(np.random.default_rng(6).normal(size=(4, 4)))[0]
-    frame = Frame(modes.shapes[0][:, :4] @ home, 0.0, 0.5 * float(modes.eigenvalues[0, 3:5].sum()))
+    frame = Frame(modes.shapes[0][:, :4] @ home, 0.0)
     turn = np.eye(modes.shapes.shape[2])
     turn[:2, :2] = [[np.cos(1.0), -np.sin(1.0)], [np.sin(1.0), np.cos(1.0)]]
     turned = replace(modes, shapes=modes.shapes @ (turn * [1, 1, -1, 1, -1, 1]))

@@ -44,7 +44,7 @@ _SLACK = 0.2  # allowed, of what remains of S, whose eigenvalues are about 1 and
 _SHARPEST = 1e-6  # of the same, below which it is not made smaller
 _ROUNDING = 2e-7
 _ZERO = 1e-10  # of eigenvalues of S with rows of unit size
-_AWAY = 1.2  # factor by which eigenvalues of a part that changes keep away from the level
+_AWAY = 1.02  # factor by which eigenvalues of a part that changes keep away from the level
 _FEW = 8  # poses at which counts are tried
 _SURE = 0.7  # share of the few poses
 

@@ -24,15 +24,26 @@ _LEAST_ALIGNMENT = 0.3
 
 @dataclass(frozen=True)
 class Following:
-    """The lowest modes in a frame that turns with them."""
+    """The lowest modes in a frame that turns with them.
+
+    gap: the eigenvalues below and above it, as far as is known [rad^2/s^2]; None where all modes are followed.
+    """
 
     frame: Frame
     request: Request
+    gap: tuple[float, float] | None
 
     @property
     def count(self) -> int:
         """Modes that are needed at a node."""
         return self.frame.size + 1
+
+    def level(self, share: float = 0.5) -> float | None:
+        """An eigenvalue in the gap, that share of the way up [rad^2/s^2]."""
+        if self.gap is None:
+            return None
+        low, high = (each - self.frame.shift for each in self.gap)
+        return float(low ** (1.0 - share) * high**share) + self.frame.shift
 
     def on_line(self, solved: Solved) -> FloatArray:
         """L (N, e), packed."""
@@ -54,18 +65,18 @@ class Following:
 
     def words(self) -> str:
         """What is followed."""
-        level = self.frame.level
+        level = self.level()
         below = "" if level is None else f", below {np.sqrt(level) / (2.0 * np.pi):.1f} Hz"
         return f"{self.frame.size} modes followed together{below}"
 
     def _matrices(self, solved: Solved) -> dict[str, FloatArray]:
         """Packed L, and the frames W. Raises NotSmoothError where the frame does not fit, or another mode comes in."""
-        frame, values = self.frame, solved.modes.eigenvalues
+        frame, values, level = self.frame, solved.modes.eigenvalues, self.level()
         found = in_frame(frame, solved.systems, solved.modes)
         if found.alignment.min() < _LEAST_ALIGNMENT:
             raise NotSmoothError("the low shapes change too much over the poses")
-        if frame.level is not None and values.shape[1] > frame.size and np.any(values[:, frame.size] < frame.level):
-            raise NotSmoothError("another mode comes below the level")
+        if level is not None and values.shape[1] > frame.size and np.any(values[:, frame.size] < level):
+            raise NotSmoothError("another mode comes in among those that are followed")
         rows, columns = np.tril_indices(frame.size)
         return {"logarithm": found.logarithms[:, rows, columns], "frames": found.frames}
 
@@ -79,7 +90,7 @@ def following(request: Request, solver: Solver, home: Solved, eigenvalues: Float
     if available < n:
         raise NotSmoothError(f"only {available} modes")
     if available < solver.count:
-        return Following(Frame(home.modes.shapes[0], solver.shift, None), request)
+        return Following(Frame(home.modes.shapes[0], solver.shift), request, None)
     shifted = eigenvalues - solver.shift
     left_out = np.sqrt(np.maximum(eigenvalues.min(axis=0)[n:], 0.0)) / (2.0 * np.pi)
     enough = np.array([reaches(request, each) for each in left_out.tolist()])
@@ -89,5 +100,5 @@ def following(request: Request, solver: Solver, home: Solved, eigenvalues: Float
     if gaps.max() < _LEAST_GAP:
         raise NotSmoothError(f"no gap above any of modes {n} to {n + len(gaps) - 1}")
     p = n + int(np.argmax(gaps > _GOOD_GAP) if gaps.max() > _GOOD_GAP else np.argmax(gaps))
-    level = float(np.sqrt(shifted[:, p - 1].max() * shifted[:, p].min())) + solver.shift
-    return Following(Frame(home.modes.shapes[0][:, :p], solver.shift, level), request)
+    gap = float(eigenvalues[:, p - 1].max()), float(eigenvalues[:, p].min())
+    return Following(Frame(home.modes.shapes[0][:, :p], solver.shift), request, gap)

@@ -23,14 +23,10 @@ from ..low_modes import LowModes
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """The shapes at home (n, p), the shift s below all eigenvalues and the level l above the p lowest [rad^2/s^2].
-
-    level: None where the machine has no more than p modes, and nothing can be missed.
-    """
+    """The shapes at home (n, p), and the shift s below all eigenvalues [rad^2/s^2]."""
 
     home: FloatArray
     shift: float
-    level: float | None
 
     @property
     def size(self) -> int:

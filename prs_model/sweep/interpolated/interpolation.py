@@ -25,7 +25,7 @@ class Interpolation(Tensor):
 
     parts: what lies where among the values. error: bound of that of log(lambda - shift), anywhere. joints: those that
     come near a limit, whose values are interpolated too. symmetry: of the poses that stand for all. counting: of
-    eigenvalues below the frame's level, None where all there are are followed.
+    eigenvalues below a level in the gap, None where all there are are followed.
     """
 
     frame: Frame
@@ -72,6 +72,6 @@ class Interpolation(Tensor):
         return values[self.parts[name]].T.reshape(-1, *self.shapes[name])
 
     def _below(self, logarithms: FloatArray) -> IntArray:
-        if self.frame.level is None:
+        if self.counting is None:
             return np.full(logarithms.shape[1], self.frame.size)
-        return np.asarray((logarithms < np.log(self.frame.level - self.shift)).sum(axis=0))
+        return np.asarray((logarithms < np.log(self.counting.level - self.shift)).sum(axis=0))

@@ -36,6 +36,7 @@ _AMPLE = 2.0  # times what the error is too large by, to be made up for with mor
 _TAKES_PART = 0.2  # of the longest tail: an axis whose own is shorter needs no more
 _ATTEMPTS = 4
 _HELD_OUT = 24
+_SHARES_OF_GAP = (0.5, 0.3, 0.7)  # where modes are counted
 _ROOM = 0.1  # of the range of a joint's values at the nodes, by which it may go further in between
 _LIMIT_SLACK = 1e-6  # m, rad
 _NEGLIGIBLE = 0.02  # of the error, what terms left out at the points of a list may add
@@ -183,10 +184,16 @@ class _Planner:
         return found, tails
 
     def _counting(self, modes: Following) -> Counting | None:
-        if modes.frame.level is None:
-            return None
-        shape = shape_of(self.machine.kinematics, self.asked)
-        return counting(self.solver, shape, self.asked, modes.frame.level, self.pool)
+        """At the level in the gap that serves, None where all modes are followed. Raises NotSmoothError."""
+        shape, refused = shape_of(self.machine.kinematics, self.asked), NotSmoothError()
+        for share in _SHARES_OF_GAP:
+            if (level := modes.level(share)) is None:
+                return None
+            try:
+                return counting(self.solver, shape, self.asked, level, self.pool)
+            except NotSmoothError as error:
+                refused = error
+        raise refused
 
     def _comes_near_limits(self, shape: Shape, symmetry: Symmetry) -> bool:
         """Whether a joint does somewhere, among all poses that are alike: limbs may be alike but for their limits."""
