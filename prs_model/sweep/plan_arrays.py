@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .enclosed.ritz import RitzBasis
 from .enclosed.ritz_at_poses import RitzAtPoses
 from .interpolated.counting import Counting
 from .interpolated.frames import Frame
@@ -20,7 +19,7 @@ from .interpolated.symmetry import Symmetry
 
 Arrays = dict[str, NDArray[Any]]
 
-_KINDS = {kind.__name__: kind for kind in (Interpolation, RitzAtPoses, Box, Axis, Frame, RitzBasis, Symmetry, Counting)}
+_KINDS = {kind.__name__: kind for kind in (Interpolation, RitzAtPoses, Box, Axis, Frame, Symmetry, Counting)}
 _TEXT = "json"
 
 

@@ -10,7 +10,9 @@ are, and its entries are smooth in the pose wherever eigenvalues of the machine 
 would give it a pole. Of the machine's eigenvalues as many lie below s as of its bodies, less the negative ones of S
 (Haynsworth, Linear Algebra Appl. 1, 1968).
 
-Coordinates that have neither mass nor stiffness in their body are unknowns too: rows (0, -B^T) below the others.
+Motions that have neither mass nor stiffness in their body are unknowns too: rows (0, -B^T) below the others. As B^T phi
+= 0 along them, a multiple of B B^T may be added to S; where the body has coordinates that strain, it is, so that S is
+positive definite on the wrenches below all eigenvalues.
 """
 
 from __future__ import annotations
@@ -19,6 +21,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
@@ -29,6 +32,16 @@ from ..kinematics import Configurations
 from ..reduction import Elements, SuperElement, TravellingElement
 from .assembly import ends_of, springs_of
 from .batch import elements_in
+from .massless import massless_motions
+
+
+class Coordinates(NamedTuple):
+    """Of a body: those that have mass or stiffness (n',), those that only joints hold (e,), and how far the former go
+    with the latter (n', e) so that nothing strains or has momentum."""
+
+    own: IntArray
+    held: IntArray
+    along: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +65,7 @@ class DualSystems:
     @property
     def size(self) -> int:
         """Number of rows of S: wrenches, and coordinates that only joints hold."""
-        return len(self.joints) + sum(len(held) for _, held in self.coordinates.values())
+        return len(self.joints) + sum(len(each.held) for each in self.coordinates.values())
 
     def at(self, shift: float) -> tuple[FloatArray, IntArray]:
         """S (N, c + e, c + e) with e coordinates that only joints hold, at a shift s [rad^2/s^2]; and numbers (N,) to
@@ -63,12 +76,12 @@ class DualSystems:
         S = np.zeros((self.count, self.size, self.size))
         below = np.full(self.count, self.size - len(self.joints))
         for rows, columns, values in self.entries():
-            S[:, rows, columns] = values
-            S[:, columns, rows] = values
+            S[:, rows, columns] += values
+            S[:, columns, rows] += np.where(rows == columns, 0.0, values)
         for name, (rows, reading) in self.bodies.items():
             root, pivots = self.decoupled(name, shift)
             below = below + (pivots < 0.0).sum(axis=1)
-            moved = reading[..., self.coordinates[name][0]] @ root
+            moved = reading[..., self.coordinates[name].own] @ root
             _add(S, rows, (moved / pivots[:, None]) @ _transposed(moved))
         return S, below
 
@@ -79,10 +92,15 @@ class DualSystems:
             yield wrenches[i], wrenches[j], compliance[:, i, j]
         place = len(self.joints)
         for name, (rows, reading) in self.bodies.items():
-            held = self.coordinates[name][1]
+            own, held, along = self.coordinates[name]
             alone = np.arange(place, place := place + len(held))
-            values = -_transposed(reading[..., held]).reshape(len(reading), -1)
-            yield np.repeat(alone, len(rows)), np.tile(rows, len(held)), values
+            felt = reading[..., held] + reading[..., own] @ along
+            yield np.repeat(alone, len(rows)), np.tile(rows, len(held)), -_transposed(felt).reshape(len(reading), -1)
+            stiff = np.diag(self.elements[name].stiffness[0])[held]
+            added = (felt * np.divide(1.0, stiff, out=np.zeros(len(held)), where=stiff > 0.0)) @ _transposed(felt)
+            i, j = np.tril_indices(len(rows))
+            if np.any(added):
+                yield rows[i], rows[j], added[:, i, j]
 
     def decoupled(self, name: str, shift: float) -> tuple[FloatArray, FloatArray]:
         """X (N, n', n') and d (N, n') of a body with X^T (K_0 - s M) X = diag(d), on the coordinates that have mass or
@@ -90,23 +108,26 @@ class DualSystems:
 
         Raises numpy.linalg.LinAlgError where the shift is an eigenvalue of the body alone.
         """
-        element, some = self.elements[name], self.coordinates[name][0]
+        element, some = self.elements[name], self.coordinates[name].own
         mass, stiffness = (each[:, some[:, None], some] for each in (element.mass, element.stiffness))
         sizes = np.diagonal(stiffness, axis1=1, axis2=2) + abs(shift) * np.diagonal(mass, axis1=1, axis2=2)
         scale = 1.0 / np.sqrt(sizes)
         pivots, turn = np.linalg.eigh((stiffness - shift * mass) * scale[:, :, None] * scale[:, None])
-        if np.any(pivots == 0.0):
+        if np.any(np.abs(pivots) <= np.finfo(float).eps):
             raise np.linalg.LinAlgError(f"{name}: the shift is one of its eigenvalues")
         return scale[:, :, None] * turn, pivots
 
     @cached_property
-    def coordinates(self) -> dict[str, tuple[IntArray, IntArray]]:
-        """Of each body those with mass or stiffness, and those without that move a joint."""
-        found: dict[str, tuple[IntArray, IntArray]] = {}
+    def coordinates(self) -> dict[str, Coordinates]:
+        """Of each body; those that have neither mass nor stiffness nor move a joint are left out."""
+        found: dict[str, Coordinates] = {}
         for name, (_, reading) in self.bodies.items():
             element = self.elements[name]
-            own = np.any(element.mass, axis=(0, 1)) | np.any(element.stiffness, axis=(0, 1))
-            found[name] = (np.flatnonzero(own), np.flatnonzero(~own & np.any(reading, axis=(0, 1))))
+            some = np.any(element.mass, axis=(0, 1)) | np.any(element.stiffness, axis=(0, 1))
+            alone = np.flatnonzero(~some & np.any(reading, axis=(0, 1)))
+            own, led, along = massless_motions(element.mass, element.stiffness, np.flatnonzero(some))
+            along = np.concatenate([along, np.zeros((len(own), len(alone)))], axis=1)
+            found[name] = Coordinates(own, np.append(led, alone), along)
         return found
 
 

@@ -90,8 +90,9 @@ class _Body:
 def _bodies(dual: DualSystems, shapes: FloatArray, place: IntArray, shift: float, at: float) -> Iterator[_Body]:
     start = 0
     for name, element in dual.elements.items():
-        some, (rows, reading) = dual.coordinates[name][0], dual.bodies[name]
-        own = shapes[start : (start := start + element.size)][some]
+        (some, held, along), (rows, reading) = dual.coordinates[name], dual.bodies[name]
+        whole = shapes[start : (start := start + element.size)]
+        own = whole[some] - along @ whole[held]
         order = np.argsort(place[rows])
         forces = reading[:, order[:, None], some].swapaxes(1, 2)
         body = _Body(place[rows][order], forces, element.mass, element.stiffness, own)
@@ -109,7 +110,7 @@ def _decoupled(body: _Body, shift: float, at: float) -> _Body:
     inertias, turn = np.linalg.eigh(lower @ mass @ lower.T)
     root = turn.T @ lower
     pivots = 1.0 - (at - shift) * inertias
-    if np.any(pivots == 0.0):
+    if np.any(np.abs(pivots) <= np.finfo(float).eps * (1.0 + (at - shift) * inertias)):
         raise np.linalg.LinAlgError("the shift is an eigenvalue of a body alone")
     return replace(body, root=root, pivots=pivots, inertias=inertias, load=root @ mass @ body.shapes)
 
@@ -133,7 +134,7 @@ def _elimination_of(dual: DualSystems) -> tuple[IntArray, _Indices, _Indices]:
     groups = [rows.tolist() for rows, _ in dual.compliances]
     for name, (rows, _) in dual.bodies.items():
         groups.append(rows.tolist())
-        held = range(place, place := place + len(dual.coordinates[name][1]))
+        held = range(place, place := place + len(dual.coordinates[name].held))
         groups += [[coordinate, *rows.tolist()] for coordinate in held]
     order, fill = _elimination(tuple(map(tuple, groups)), c, dual.size)
     places = np.argsort(order).astype(np.int64)

@@ -19,6 +19,8 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
+_SINGULAR = 1e-10  # an eigenvalue of a matrix with unit rows
+
 
 class Packed(NamedTuple):
     """A dual system at N poses, at a shift s, with shapes V of r columns; body after body in flat arrays.
@@ -66,9 +68,15 @@ def below(packed: Packed) -> tuple[IntArray, BoolArray]:
     """How many eigenvalues lie below the shift (N,), and whether that is sure (N,)."""
     bodies, whole, _ = _assembled(packed)
     size = len(packed.constant) - len(packed.mass)
-    count = packed.below - (np.linalg.eigvalsh(whole[:, :size, :size]) < 0.0).sum(axis=1)
-    count += sum((each.pivots < 0.0).sum(axis=1) for each in bodies if len(each.inertia) > 1)
-    return count, np.ones(len(count), dtype=bool)
+    S = whole[:, :size, :size]
+    scale = _to_unit_rows(S)
+    values = np.linalg.eigvalsh(S * scale[:, :, None] * scale[:, None])
+    count, sure = packed.below - (values < 0.0).sum(axis=1), (np.abs(values) > _SINGULAR).all(axis=1)
+    for each in bodies:
+        if len(each.inertia) > 1:
+            count += (each.pivots < 0.0).sum(axis=1)
+            sure &= (np.abs(each.pivots) > _SINGULAR).all(axis=1)
+    return count, sure
 
 
 def moments(packed: Packed, count: int) -> FloatArray:
@@ -108,7 +116,9 @@ def _assembled(packed: Packed) -> tuple[list[_Body], FloatArray, FloatArray]:
             some = slice(moving, moving := moving + n * n)
             pencil, own = (each[:, some].reshape(count, n, n) for each in (packed.pencils, packed.masses))
             shape = packed.shapes[shapes : (shapes := shapes + n * r)].reshape(n, r)
-            pivots, turn = np.linalg.eigh(pencil)
+            scale = _to_unit_rows(pencil)
+            pivots, turn = np.linalg.eigh(pencil * scale[:, :, None] * scale[:, None])
+            turn *= scale[:, :, None]
             back = _transposed(turn)
             body = _Body(where, back @ forces, back @ (own @ shape), pivots, back @ own @ turn)
             mass += shape.T @ own @ shape
@@ -126,6 +136,15 @@ def _assembled(packed: Packed) -> tuple[list[_Body], FloatArray, FloatArray]:
         places = np.concatenate([where, np.arange(len(packed.constant) - r, len(packed.constant))])
         whole[:, places[:, None], places] += added
     return bodies, whole, mass
+
+
+def _to_unit_rows(matrices: FloatArray) -> FloatArray:
+    """Factors (N, q) of rows, and of columns alike, of symmetric matrices, for their largest entries to be near 1."""
+    sizes, scale = np.abs(matrices), np.ones(matrices.shape[:2])
+    for _ in range(3):
+        largest = (sizes * scale[:, :, None] * scale[:, None]).max(axis=2, initial=0.0)
+        scale /= np.sqrt(np.where(largest > 0.0, largest, 1.0))
+    return scale
 
 
 def _applied(bodies: list[_Body], S: FloatArray, loads: list[FloatArray]) -> list[FloatArray]:

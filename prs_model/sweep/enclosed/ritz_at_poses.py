@@ -12,7 +12,8 @@ With k eigenvalues above some rho, which is counted exactly, and k Ritz vectors 
 
     mu_i <= rho + the i-th eigenvalue of D + D^-1/2 R D^-1/2,    D = diag(theta - rho),    R = (T U)^T M T U - theta^2
 
-(Lehmann; Parlett, The Symmetric Eigenvalue Problem, 10.5). So both sides are proved at every pose, but for rounding.
+(Lehmann; Parlett, The Symmetric Eigenvalue Problem, 10.5). So both sides are proved at every pose, but for rounding,
+of which there is more the nearer to zero s is.
 """
 
 from __future__ import annotations
@@ -24,10 +25,11 @@ import numpy as np
 
 from ...arrays import BoolArray, FloatArray
 from ...synthesis.dual import DualSystems, dual_assembly
+from ...synthesis.redundancy import without_redundant
 from ..exact import part
+from ..rounding import is_rigid
 from . import kernels_ritz as plain
 from .dual_packed import packed
-from .ritz import RitzBasis
 
 if TYPE_CHECKING:
     from ...kinematics import Configurations
@@ -38,15 +40,22 @@ _CHUNK = 256  # configurations at once: 30 MB at 160 coordinates
 
 @dataclass(frozen=True, eq=False)
 class RitzAtPoses:
-    """A basis that serves at any pose. rounding: of frequencies, relative, which is added to their bounds."""
+    """Shapes V (n, r) that serve at any pose, those that matter most first; the shift s and a level for counting.
 
-    basis: RitzBasis
-    rounding: float = 1e-11
+    All in [rad^2/s^2]: s is below all eigenvalues, and those that are round-off beside `rate` strain nothing. rounding:
+    of frequencies (p,), relative, which is added to their bounds.
+    """
+
+    shapes: FloatArray
+    shift: float
+    level: float
+    rate: float
+    rounding: FloatArray
 
     @property
-    def shift(self) -> float:
-        """Below all eigenvalues [rad^2/s^2]."""
-        return self.basis.shift
+    def size(self) -> int:
+        """Number of shapes r."""
+        return int(self.shapes.shape[1])
 
     def at(
         self, machine: Machine, configurations: Configurations, count: int, kernels: Any = plain
@@ -54,7 +63,7 @@ class RitzAtPoses:
         """`frequencies` in configurations that all exist, limits left aside; none is complete where S is singular."""
         parts = [part(configurations, slice(start, start + _CHUNK)) for start in range(0, len(configurations), _CHUNK)]
         duals = (dual_assembly(machine.description, machine.parts, machine.joints, each) for each in parts)
-        found = [self._or_nothing(dual, count, kernels) for dual in duals]
+        found = [self._or_nothing(without_redundant(dual), count, kernels) for dual in duals]
         frequencies, bounds, complete = (np.concatenate(each) for each in zip(*found, strict=True))
         return frequencies, bounds, complete
 
@@ -69,22 +78,23 @@ class RitzAtPoses:
         self, dual: DualSystems, count: int, kernels: Any = plain
     ) -> tuple[FloatArray, FloatArray, BoolArray]:
         """The lowest frequencies (N, count) [Hz], upper bounds of the exact ones; bounds of their relative errors; and
-        whether as many Ritz values as eigenvalues lie below the level, all of these among them (N,).
+        whether as many Ritz values as eigenvalues lie below the level, all of these among them, and none is of a mode
+        that strains nothing (N,).
 
         Bounds hold where that is so, and are infinite elsewhere. Raises numpy.linalg.LinAlgError where S is singular:
         rigid joints hold a motion twice, or a body alone has an eigenvalue at the level.
         """
-        basis = self.basis
-        number, sure = kernels.below(packed(dual, basis.shapes[:, :0], basis.shift, basis.level))
-        several = min(max(count, int(number.max())), basis.size)
-        mu, theta, residual = _improved(kernels.moments(packed(dual, basis.shapes, basis.shift, basis.shift), several))
-        pole = 1.0 / (basis.level - basis.shift)
+        number, sure = kernels.below(packed(dual, self.shapes[:, :0], self.shift, self.level))
+        several = min(max(count, int(number.max())), self.size)
+        mu, theta, residual = _improved(kernels.moments(packed(dual, self.shapes, self.shift, self.shift), several))
+        pole, mu = 1.0 / (self.level - self.shift), mu[:, :count]
+        highest = np.maximum(pole + _lehmann(theta - pole, residual)[:, :count], mu)
+        values = np.maximum(1.0 / mu + self.shift, -np.finfo(float).eps * self.shift)
+        lower = values - (highest - mu) / (mu * highest)
         complete = sure & ((theta > pole).sum(axis=1) == number) & (number >= count)
-        highest = pole + _lehmann(theta - pole, residual)[:, :count]
-        eigenvalues = np.maximum(1.0 / mu[:, :count] + basis.shift, np.finfo(float).tiny)
-        off = np.maximum(highest - mu[:, :count], 0.0) / (mu[:, :count] * highest)
-        off[~complete] = np.inf
-        return np.sqrt(eigenvalues) / (2.0 * np.pi), off / (2.0 * eigenvalues) + self.rounding, complete
+        complete &= ((lower > 0.0) & ~is_rigid(values, np.array(self.rate))).all(axis=1)
+        bounds = (values - lower) / np.where(complete[:, None], 2.0 * lower, 1.0) + self.rounding[:count]
+        return np.sqrt(values) / (2.0 * np.pi), np.where(complete[:, None], bounds, np.inf), complete
 
 
 def _improved(moments: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
