@@ -67,23 +67,39 @@ class DualSystems:
         """Number of rows of S: wrenches, and coordinates that only joints hold."""
         return len(self.joints) + sum(len(each.held) for each in self.coordinates.values())
 
-    def at(self, shift: float) -> tuple[FloatArray, IntArray]:
-        """S (N, c + e, c + e) with e coordinates that only joints hold, at a shift s [rad^2/s^2]; and numbers (N,) to
-        subtract its negative eigenvalues from, which leaves the number of the machine's eigenvalues below s.
+    def at(self, shift: float, keeping: bool = False) -> tuple[FloatArray, IntArray]:
+        """S (N, r, r) at a shift s [rad^2/s^2], r the c wrenches and the coordinates that only joints hold; and numbers
+        (N,) to subtract its negative eigenvalues from, which leaves the number of the machine's eigenvalues below s.
 
-        Raises numpy.linalg.LinAlgError where the shift is an eigenvalue of a body alone.
+        keeping: bodies whose matrices follow the pose keep their coordinates among the unknowns, in further rows; no
+        eigenvalue of theirs then makes a pole of S in the pose.
+        Raises numpy.linalg.LinAlgError where the shift is an eigenvalue of another body alone.
         """
-        S = np.zeros((self.count, self.size, self.size))
-        below = np.full(self.count, self.size - len(self.joints))
+        kept = self._kept if keeping else {}
+        size = self.size + sum(map(len, kept.values()))
+        S, place = np.zeros((self.count, size, size)), self.size
+        below = np.full(self.count, size - len(self.joints))
         for rows, columns, values in self.entries():
             S[:, rows, columns] += values
             S[:, columns, rows] += np.where(rows == columns, 0.0, values)
         for name, (rows, reading) in self.bodies.items():
+            if name in kept:
+                own, element = kept[name], self.elements[name]
+                apart = np.arange(place, place := place + len(own))
+                S[:, apart[:, None], apart] = -(element.stiffness - shift * element.mass)[:, own[:, None], own]
+                S[:, rows[:, None], apart] = -reading[..., own]
+                S[:, apart[:, None], rows] = -_transposed(reading[..., own])
+                continue
             root, pivots = self.decoupled(name, shift)
             below = below + (pivots < 0.0).sum(axis=1)
             moved = reading[..., self.coordinates[name].own] @ root
             _add(S, rows, (moved / pivots[:, None]) @ _transposed(moved))
         return S, below
+
+    @property
+    def _kept(self) -> dict[str, IntArray]:
+        """The coordinates of bodies whose matrices follow the pose."""
+        return {name: each.own for name, each in self.coordinates.items() if len(self.elements[name].mass) > 1}
 
     def entries(self) -> Iterator[tuple[IntArray, IntArray, FloatArray]]:
         """What S holds at any shift, below its diagonal and on it: rows (m,), columns (m,), values (N or 1, m)."""

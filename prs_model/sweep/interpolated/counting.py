@@ -14,7 +14,7 @@ many poses, and on S itself at a few.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Any
@@ -22,10 +22,8 @@ from typing import Any
 import numpy as np
 
 from ...arrays import FloatArray, IntArray
-from ...reduction import Elements
-from ...synthesis import DualSystems
 from .. import kernels as plain
-from ..exact import Solver
+from ..exact import Solver, part
 from ..kernels import as_frobenius
 from ..not_smooth import NotSmoothError
 from ..poses import Poses
@@ -43,8 +41,6 @@ _MOST = 2500  # nodes
 _SLACK = 0.2  # allowed, of what remains of S, whose eigenvalues are about 1 and -1
 _SHARPEST = 1e-6  # of the same, below which it is not made smaller
 _ROUNDING = 2e-7
-_ZERO = 1e-10  # of eigenvalues of S with rows of unit size
-_AWAY = 1.02  # factor by which eigenvalues of a part that changes keep away from the level
 _FEW = 8  # poses at which counts are tried
 _SURE = 0.7  # share of the few poses
 
@@ -78,7 +74,7 @@ class Counting(Tensor):
 def counting(solver: Solver, shape: Shape, poses: Poses, level: float, pool: ThreadPoolExecutor) -> Counting:
     """Made on a box of its own, with more nodes until some of `poses` are counted rightly and without doubt.
 
-    Raises NotSmoothError where a part alone has an eigenvalue at the level, or too many nodes would be needed.
+    Raises NotSmoothError where too many nodes would be needed, LinAlgError where a part alone has a mode at the level.
     """
     counts = tuple(
         _ROUND if turns else _ACROSS if shape.mirror is not None and k == shape.mirror[0] else _FEWEST
@@ -118,28 +114,10 @@ def _on(box: Box, solver: Solver, level: float, pool: ThreadPoolExecutor) -> tup
 
 
 def _dual(solver: Solver, poses: FloatArray, level: float, pool: ThreadPoolExecutor) -> tuple[FloatArray, IntArray]:
-    """S (N, c, c) at poses (N, d), and how many eigenvalues the bodies alone have below the level (N,).
-
-    Raises NotSmoothError where that number changes, or might change in between.
-    """
-
-    def at_level(dual: DualSystems) -> tuple[FloatArray, IntArray]:
-        if not _keep_away(dual.elements.values(), level):
-            raise NotSmoothError("a part alone has a mode near the level")
-        return dual.at(level)
-
-    S, below = (np.concatenate(each) for each in zip(*solver.each_dual(poses, at_level, pool), strict=True))
-    if np.ptp(below):
-        raise NotSmoothError("a part alone has a mode that crosses the level")
+    """S (N, c, c) at poses (N, d), and how many eigenvalues the bodies alone have below the level (N,)."""
+    chunks = list(solver.each_dual(poses, lambda dual: dual.at(level, keeping=True), pool))
+    S, below = (np.concatenate(each) for each in zip(*chunks, strict=True))
     return S, below
-
-
-def _keep_away(elements: Iterable[Elements], level: float) -> bool:
-    """Whether no eigenvalue of a part that follows a travelling contact is near the level in any configuration."""
-    changing = [each for each in elements if len(each.mass) > 1]
-    near = (level / _AWAY, level * _AWAY)
-    counts = [[np.linalg.eigvalsh(each.stiffness - at * each.mass) < 0.0 for at in near] for each in changing]
-    return all(np.array_equal(below.sum(axis=1), above.sum(axis=1)) for below, above in counts)
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,9 +140,14 @@ class _Trials:
 
 
 def _trials(solver: Solver, poses: Poses, level: float, pool: ThreadPoolExecutor) -> _Trials:
-    """Some of the poses, all of which are within reach."""
+    """Some of the poses, all of which are within reach; the exact counts are those of K - l M, not of S."""
     some = poses.at(np.random.default_rng(5).choice(poses.size, min(_FEW, poses.size), replace=False))
-    S, below = _dual(solver, some, level, pool)
-    scale = 1.0 / np.sqrt(np.abs(S).max(axis=1))
-    spectra = np.linalg.eigvalsh(S * scale[:, :, None] * scale[:, None, :])
-    return _Trials(Poses(poses.names, (), some), S, below - (spectra < -_ZERO).sum(axis=1))
+    found = solver.machine.kinematics.solve_batch(some)
+    pencils = solver.systems(part(found, slice(None))).pencils
+    exact = [_negative(stiffness - level * mass, np.diag(stiffness)) for mass, stiffness, _ in pencils]
+    return _Trials(Poses(poses.names, (), some), _dual(solver, some, level, pool)[0], np.array(exact))
+
+
+def _negative(matrix: FloatArray, sizes: FloatArray) -> int:
+    scale = 1.0 / np.sqrt(np.where(sizes > 0.0, sizes, 1.0))
+    return int((np.linalg.eigvalsh(matrix * np.outer(scale, scale)) < 0.0).sum())
