@@ -22,36 +22,37 @@ _WIDTH = 8  # columns that are improved at a time
 _PIVOT = 1e-7  # of what it is the difference of: elimination loses no more digits than that
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
 def below(packed: Any) -> tuple[IntArray, BoolArray]:
     """How many eigenvalues lie below the shift (N,), and whether that is sure (N,)."""
-    count, r, whole = len(packed.readings), len(packed.mass), len(packed.constant)
-    number, sure = np.empty(count, dtype=np.int64), np.empty(count, dtype=np.bool_)
-    many, n = len(packed.sizes), packed.sizes[:, 1].max()
-    x, pencils = np.empty((many, n, packed.sizes[:, 0].max() + r)), np.empty((many, n, n))
-    a, mass, d, scale = np.empty((whole, whole)), np.empty((r, r)), np.empty((many, n)), np.empty(whole + n)
-    for p in range(count):
-        negative, certain = _assembled(packed, p, a, mass, x, pencils, d, scale)
-        ours, fine = _condensed(packed, a, scale)
-        number[p], sure[p] = negative - ours, certain and fine
+    _, number, sure = _worked_out(packed, 0)
     return number, sure
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
 def moments(packed: Any, count: int) -> FloatArray:
     """(N, 3, count, count): X^T M T^k X with k = 2, 3, 4 and T = (K - s M)^-1 M, of the Ritz vectors X of T on V with
     the largest Ritz values mu, as columns of X diag(1 / mu)."""
+    result, _, _ = _worked_out(packed, count)
+    return np.asarray(result)
+
+
+@numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
+def _worked_out(packed: Any, count: int) -> tuple[FloatArray, IntArray, BoolArray]:
+    """Both: one kernel is compiled in less time than two."""
     r, whole = len(packed.mass), len(packed.constant)
-    size, many, most = whole - r, len(packed.sizes), packed.sizes[:, 1].max()
+    size, many, most = whole - r, len(packed.sizes), _largest(packed.sizes, 1)
     result = np.empty((len(packed.readings), 3, count, count))
-    x, pencils = np.empty((many, most, packed.sizes[:, 0].max() + r)), np.empty((many, most, most))
+    number, sure = np.empty(len(result), dtype=np.int64), np.empty(len(result), dtype=np.bool_)
+    x, pencils = np.empty((many, most, _largest(packed.sizes, 0) + r)), np.empty((many, most, most))
     a, mass, d, scale = np.empty((whole, whole)), np.empty((r, r)), np.empty((many, most)), np.empty(whole + most)
     blocks, wrenches = -(-count // _WIDTH), np.empty((size, _WIDTH))
     shape = (blocks, many, most, _WIDTH)
     loads, once, further, twice = np.zeros(shape), np.zeros(shape), np.zeros(shape), np.zeros(shape)
     for p in range(len(result)):
-        _assembled(packed, p, a, mass, x, pencils, d, scale)
-        _condensed(packed, a, scale)
+        negative, certain = _assembled(packed, p, a, mass, x, pencils, d, scale)
+        ours, fine = _condensed(packed, a, scale)
+        number[p], sure[p] = negative - ours, certain and fine
+        if count == 0:
+            continue
         chosen = _ritz_vectors(a[size:, size:], mass, count)
         for e in range(blocks):
             _loads(packed, x, chosen, e * _WIDTH, loads[e])
@@ -64,20 +65,83 @@ def moments(packed: Any, count: int) -> FloatArray:
                 result[p, 0, i, j] = _together(packed, once, loads, i, j)
                 result[p, 1, i, j] = _together(packed, twice, loads, i, j)
                 result[p, 2, i, j] = _together(packed, twice, further, i, j)
-    return result
+    return result, number, sure
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
 def _ritz_vectors(upper: FloatArray, mass: FloatArray, count: int) -> FloatArray:
     """Those with the largest Ritz values mu, times 1 / mu (r, count)."""
-    r = len(mass)
-    full, product = upper + np.triu(upper, 1).T, mass + np.triu(mass, 1).T
-    root = np.linalg.inv(np.linalg.cholesky(product))
-    values, vectors = np.linalg.eigh(root @ full @ root.T)
-    some = np.empty((r, count))
-    for c in range(count):
-        some[:, c] = vectors[:, r - 1 - c] / values[r - 1 - c]
-    return root.T @ some
+    r = uint(len(mass))
+    factor, full = np.empty((len(mass), len(mass))), np.empty((len(mass), len(mass)))
+    _copy(mass, factor)
+    _factorised(factor)
+    for i in range(r):
+        for c in range(i, r):
+            full[i, c] = full[c, i] = upper[i, c]
+    _solved(factor, full)
+    for i in range(r):
+        for c in range(i):
+            full[i, c], full[c, i] = full[c, i], full[i, c]
+    _solved(factor, full)
+    values, vectors = np.linalg.eigh(full)
+    some = np.empty((len(mass), count))
+    for i in range(len(mass) - 1, -1, -1):
+        for c in range(count):
+            some[i, c] = vectors[i, len(mass) - 1 - c] / values[len(mass) - 1 - c]
+        for j in range(uint(i + 1), r):
+            for c in range(uint(count)):
+                some[i, c] -= factor[i, j] * some[j, c]
+        for c in range(count):
+            some[i, c] /= factor[i, i]
+    return some
+
+
+@numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
+def _factorised(a: FloatArray) -> None:
+    """U of U^T U, in place of an upper triangle."""
+    r = uint(len(a))
+    for k in range(r):
+        root = np.sqrt(a[k, k])
+        for c in range(k, r):
+            a[k, c] /= root
+        for i in range(uint(k + 1), r):
+            for c in range(i, r):
+                a[i, c] -= a[k, i] * a[k, c]
+
+
+@numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
+def _solved(factor: FloatArray, b: FloatArray) -> None:
+    """U^-T b, in place of b."""
+    r = uint(len(b))
+    for k in range(r):
+        for c in range(r):
+            b[k, c] /= factor[k, k]
+        for i in range(uint(k + 1), r):
+            for c in range(r):
+                b[i, c] -= factor[k, i] * b[k, c]
+
+
+@numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
+def _largest(sizes: IntArray, which: int) -> int:
+    largest = 0
+    for b in range(len(sizes)):
+        largest = max(largest, sizes[b, which])
+    return largest
+
+
+@numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
+def _copy(source: FloatArray, result: FloatArray) -> None:
+    for i in range(len(source)):
+        for c in range(source.shape[1]):
+            result[i, c] = source[i, c]
+
+
+@numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
+def _fill(result: FloatArray, rows: int, columns: int) -> None:
+    """Zeros."""
+    for i in range(rows):
+        for c in range(columns):
+            result[i, c] = 0.0
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
@@ -86,8 +150,8 @@ def _loads(packed: Any, x: FloatArray, chosen: FloatArray, first: int, result: F
     wide = min(_WIDTH, chosen.shape[1] - first)
     for b in range(len(packed.sizes)):
         k, n, _ = packed.sizes[b]
+        _fill(result[b], n, _WIDTH)
         for i in range(n):
-            result[b, i] = 0.0
             for j in range(len(chosen)):
                 factor = x[b, i, k + j]
                 for c in range(wide):
@@ -116,7 +180,7 @@ def _applied(
 ) -> None:
     """(K - s M)^-1 of loads (b, n, width), of each body and on its coordinates X."""
     wide, size = uint(_WIDTH), len(wrenches)
-    wrenches[:] = 0.0
+    _fill(wrenches, size, _WIDTH)
     rows = 0
     for b in range(len(packed.sizes)):
         k, n, _ = packed.sizes[b]
@@ -140,7 +204,7 @@ def _applied(
     rows = 0
     for b in range(len(packed.sizes)):
         k, n, _ = packed.sizes[b]
-        result[b, :n] = loads[b, :n]
+        _copy(loads[b, :n], result[b])
         for i in range(k):
             row = packed.rows[rows + i]
             for j in range(n):
@@ -166,15 +230,16 @@ def _momenta(packed: Any, p: int, pencils: FloatArray, d: FloatArray, shapes: Fl
                     result[b, i, c] = packed.inertias[diagonals + i] * shapes[b, i, c]
             diagonals += n
             continue
-        own, physical = packed.masses[p, moving : moving + n * n].reshape(n, n), shapes[b, :n].copy()
+        own, physical = packed.masses[p, moving : moving + n * n].reshape(n, n), np.empty((n, _WIDTH))
+        _copy(shapes[b, :n], physical)
         moving += n * n
         for j in range(n - 1, -1, -1):
             for i in range(j + 1, n):
                 factor = pencils[b, j, i] / d[b, j]
                 for c in range(wide):
                     physical[j, c] -= factor * physical[i, c]
+        _fill(result[b], n, _WIDTH)
         for i in range(n):
-            result[b, i] = 0.0
             for j in range(n):
                 factor = own[i, j]
                 for c in range(wide):
@@ -203,8 +268,8 @@ def _assembled(
     """
     r = uint(len(mass))
     size = uint(len(a)) - r
-    a[:] = packed.constant
-    mass[:] = packed.mass
+    _copy(packed.constant, a)
+    _copy(packed.mass, mass)
     for e in range(len(packed.entries)):
         a[packed.entries[e, 0], packed.entries[e, 1]] += packed.values[p, e]
     number, fine = packed.below, True
@@ -217,7 +282,7 @@ def _assembled(
         readings += n * k
         if follows:
             own = packed.masses[p, moving : moving + n * n].reshape(n, n)
-            pencils[b, :n, :n] = packed.pencils[p, moving : moving + n * n].reshape(n, n)
+            _copy(packed.pencils[p, moving : moving + n * n].reshape(n, n), pencils[b])
             shape = packed.shapes[shapes : shapes + n * len(mass)].reshape(n, len(mass))
             _beside(own, shape, forces, x[b], mass)
             negative, certain = _eliminated(pencils[b], x[b], n, width, scale)
@@ -230,13 +295,15 @@ def _assembled(
             root = packed.roots[fixed : fixed + n * n].reshape(n, n)
             load = packed.loads[loads : loads + n * len(mass)].reshape(n, len(mass))
             _turned(root, forces, load, x[b])
-            d[b, :n] = packed.pivots[diagonals : diagonals + n]
+            for i in range(n):
+                d[b, i] = packed.pivots[diagonals + i]
             fixed += n * n
             loads += n * len(mass)
             diagonals += n
         last = width if follows else k
-        added[:last, :width] = 0.0
-        scale[:n] = 1.0 / d[b, :n]
+        _fill(added, last, width)
+        for i in range(n):
+            scale[i] = 1.0 / d[b, i]
         _products(x[b], scale, n, 0, last, width, added)
         for i in range(k):
             row = packed.rows[rows + i]
@@ -256,8 +323,10 @@ def _beside(own: FloatArray, shape: FloatArray, forces: FloatArray, x: FloatArra
     """[B^T, M V] of a body that follows the pose, and its part of V^T M V."""
     n, k, r = len(own), forces.shape[1], shape.shape[1]
     for i in range(n):
-        x[i, :k] = forces[i]
-        x[i, k : k + r] = 0.0
+        for c in range(k):
+            x[i, c] = forces[i, c]
+        for c in range(k, k + r):
+            x[i, c] = 0.0
         for j in range(n):
             factor = own[i, j]
             for c in range(uint(0), uint(r)):
@@ -273,8 +342,10 @@ def _turned(root: FloatArray, forces: FloatArray, load: FloatArray, x: FloatArra
     """X^T [B^T, M V] of a body that is the same at all poses."""
     n, k, r = len(root), forces.shape[1], load.shape[1]
     for i in range(n):
-        x[i, :k] = 0.0
-        x[i, k : k + r] = load[i]
+        for c in range(k):
+            x[i, c] = 0.0
+        for c in range(r):
+            x[i, k + c] = load[i, c]
         for j in range(n):
             factor = root[i, j]
             for c in range(uint(0), uint(k)):
