@@ -192,7 +192,7 @@ def test_a_machine_that_moves_freely_has_no_relative_bounds(tmp_path: Path) -> N
         basis(machine, listed(machine, 1))
 
 
-@pytest.mark.parametrize("name", ["kernels_ritz", "kernels_ritz_jit"])
+@pytest.mark.parametrize("name", ["kernels_ritz", "kernels_ritz_jit", "small_jit"])
 def test_kernels_import_numpy_and_numba_only(name: str) -> None:
     tree = ast.parse((Path(kernels_ritz.__file__).parent / f"{name}.py").read_text())
     imports = {
@@ -201,4 +201,4 @@ def test_kernels_import_numpy_and_numba_only(name: str) -> None:
         if isinstance(node, ast.Import | ast.ImportFrom)
         for alias in node.names
     }
-    assert imports <= {"__future__", "numba", "numpy", "numpy.typing", "typing"}
+    assert imports <= {"__future__", "numba", "numpy", "numpy.typing", "typing", ".small_jit"}
