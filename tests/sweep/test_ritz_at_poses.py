@@ -13,6 +13,7 @@ import pytest
 
 import prs_model as prs
 from prs_model.linear_algebra import positive_definite_pencil
+from prs_model.reduction import SuperElement
 from prs_model.sweep.enclosed import kernels_ritz
 from prs_model.sweep.enclosed.basis_at_poses import leading_shapes, ritz_at_poses
 from prs_model.sweep.enclosed.dual_packed import packed
@@ -169,8 +170,10 @@ def test_a_mode_that_no_snapshot_shows_is_noticed_where_it_comes_down(tmp_path: 
 def test_coordinates_without_mass_or_stiffness_are_held_by_joints_alone(tmp_path: Path, compiled: ModuleType) -> None:
     """The lower block without its mass is nothing but a place between two joints."""
     machine = stick(tmp_path, held=True)
-    nothing = np.zeros_like(machine.parts["block"].mass)
-    parts = {**machine.parts, "block": replace(machine.parts["block"], mass=nothing)}
+    block = machine.parts["block"]
+    assert isinstance(block, SuperElement)
+    nothing = np.zeros_like(block.mass)
+    parts = {**machine.parts, "block": replace(block, mass=nothing)}
     configurations = machine.kinematics.solve_batch(np.zeros((1, 0)))
     systems = assemble_many(machine.description, parts, machine.joints, configurations)
     modes = low_modes(systems, COUNT + 2, 0.0)
@@ -192,7 +195,7 @@ def test_a_machine_that_moves_freely_has_no_relative_bounds(tmp_path: Path) -> N
         basis(machine, listed(machine, 1))
 
 
-@pytest.mark.parametrize("name", ["kernels_ritz", "kernels_ritz_jit"])
+@pytest.mark.parametrize("name", ["kernels_ritz", "kernels_ritz_jit", "small_jit"])
 def test_kernels_import_numpy_and_numba_only(name: str) -> None:
     tree = ast.parse((Path(kernels_ritz.__file__).parent / f"{name}.py").read_text())
     imports = {
@@ -201,4 +204,4 @@ def test_kernels_import_numpy_and_numba_only(name: str) -> None:
         if isinstance(node, ast.Import | ast.ImportFrom)
         for alias in node.names
     }
-    assert imports <= {"__future__", "numba", "numpy", "numpy.typing", "typing"}
+    assert imports <= {"__future__", "numba", "numpy", "numpy.typing", "typing", ".small_jit"}

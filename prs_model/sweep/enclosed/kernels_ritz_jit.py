@@ -12,14 +12,13 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from .small_jit import PIVOT, copy, eliminated, fill, largest, products, ritz_vectors, uint
+
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
-uint: Any = numba.uintp  # an index without sign never counts from the end, and loops become vector instructions
-
 _WIDTH = 8  # columns that are improved at a time
-_PIVOT = 1e-7  # of what it is the difference of: elimination loses no more digits than that
 
 
 def below(packed: Any) -> tuple[IntArray, BoolArray]:
@@ -39,10 +38,10 @@ def moments(packed: Any, count: int) -> FloatArray:
 def _worked_out(packed: Any, count: int) -> tuple[FloatArray, IntArray, BoolArray]:
     """Both: one kernel is compiled in less time than two."""
     r, whole = len(packed.mass), len(packed.constant)
-    size, many, most = whole - r, len(packed.sizes), _largest(packed.sizes, 1)
+    size, many, most = whole - r, len(packed.sizes), largest(packed.sizes, 1)
     result = np.empty((len(packed.readings), 3, count, count))
     number, sure = np.empty(len(result), dtype=np.int64), np.empty(len(result), dtype=np.bool_)
-    x, pencils = np.empty((many, most, _largest(packed.sizes, 0) + r)), np.empty((many, most, most))
+    x, pencils = np.empty((many, most, largest(packed.sizes, 0) + r)), np.empty((many, most, most))
     a, mass, d, scale = np.empty((whole, whole)), np.empty((r, r)), np.empty((many, most)), np.empty(whole + most)
     blocks, wrenches = -(-count // _WIDTH), np.empty((size, _WIDTH))
     shape = (blocks, many, most, _WIDTH)
@@ -53,7 +52,7 @@ def _worked_out(packed: Any, count: int) -> tuple[FloatArray, IntArray, BoolArra
         number[p], sure[p] = negative - ours, certain and fine
         if count == 0:
             continue
-        chosen = _ritz_vectors(a[size:, size:], mass, count)
+        chosen = ritz_vectors(a[size:, size:], mass, count)
         for e in range(blocks):
             _loads(packed, x, chosen, e * _WIDTH, loads[e])
             _applied(packed, a, x, d, loads[e], wrenches, once[e])
@@ -69,88 +68,12 @@ def _worked_out(packed: Any, count: int) -> tuple[FloatArray, IntArray, BoolArra
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
-def _ritz_vectors(upper: FloatArray, mass: FloatArray, count: int) -> FloatArray:
-    """Those with the largest Ritz values mu, times 1 / mu (r, count)."""
-    r = uint(len(mass))
-    factor, full = np.empty((len(mass), len(mass))), np.empty((len(mass), len(mass)))
-    _copy(mass, factor)
-    _factorised(factor)
-    for i in range(r):
-        for c in range(i, r):
-            full[i, c] = full[c, i] = upper[i, c]
-    _solved(factor, full)
-    for i in range(r):
-        for c in range(i):
-            full[i, c], full[c, i] = full[c, i], full[i, c]
-    _solved(factor, full)
-    values, vectors = np.linalg.eigh(full)
-    some = np.empty((len(mass), count))
-    for i in range(len(mass) - 1, -1, -1):
-        for c in range(count):
-            some[i, c] = vectors[i, len(mass) - 1 - c] / values[len(mass) - 1 - c]
-        for j in range(uint(i + 1), r):
-            for c in range(uint(count)):
-                some[i, c] -= factor[i, j] * some[j, c]
-        for c in range(count):
-            some[i, c] /= factor[i, i]
-    return some
-
-
-@numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
-def _factorised(a: FloatArray) -> None:
-    """U of U^T U, in place of an upper triangle."""
-    r = uint(len(a))
-    for k in range(r):
-        root = np.sqrt(a[k, k])
-        for c in range(k, r):
-            a[k, c] /= root
-        for i in range(uint(k + 1), r):
-            for c in range(i, r):
-                a[i, c] -= a[k, i] * a[k, c]
-
-
-@numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
-def _solved(factor: FloatArray, b: FloatArray) -> None:
-    """U^-T b, in place of b."""
-    r = uint(len(b))
-    for k in range(r):
-        for c in range(r):
-            b[k, c] /= factor[k, k]
-        for i in range(uint(k + 1), r):
-            for c in range(r):
-                b[i, c] -= factor[k, i] * b[k, c]
-
-
-@numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
-def _largest(sizes: IntArray, which: int) -> int:
-    largest = 0
-    for b in range(len(sizes)):
-        largest = max(largest, sizes[b, which])
-    return largest
-
-
-@numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
-def _copy(source: FloatArray, result: FloatArray) -> None:
-    for i in range(len(source)):
-        for c in range(source.shape[1]):
-            result[i, c] = source[i, c]
-
-
-@numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
-def _fill(result: FloatArray, rows: int, columns: int) -> None:
-    """Zeros."""
-    for i in range(rows):
-        for c in range(columns):
-            result[i, c] = 0.0
-
-
-@numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
 def _loads(packed: Any, x: FloatArray, chosen: FloatArray, first: int, result: FloatArray) -> None:
     """X^T M V of each body times columns first, .. of those chosen (r, p); zero beyond them."""
     wide = min(_WIDTH, chosen.shape[1] - first)
     for b in range(len(packed.sizes)):
         k, n, _ = packed.sizes[b]
-        _fill(result[b], n, _WIDTH)
+        fill(result[b], n, _WIDTH)
         for i in range(n):
             for j in range(len(chosen)):
                 factor = x[b, i, k + j]
@@ -180,7 +103,7 @@ def _applied(
 ) -> None:
     """(K - s M)^-1 of loads (b, n, width), of each body and on its coordinates X."""
     wide, size = uint(_WIDTH), len(wrenches)
-    _fill(wrenches, size, _WIDTH)
+    fill(wrenches, size, _WIDTH)
     rows = 0
     for b in range(len(packed.sizes)):
         k, n, _ = packed.sizes[b]
@@ -204,7 +127,7 @@ def _applied(
     rows = 0
     for b in range(len(packed.sizes)):
         k, n, _ = packed.sizes[b]
-        _copy(loads[b, :n], result[b])
+        copy(loads[b, :n], result[b])
         for i in range(k):
             row = packed.rows[rows + i]
             for j in range(n):
@@ -231,14 +154,14 @@ def _momenta(packed: Any, p: int, pencils: FloatArray, d: FloatArray, shapes: Fl
             diagonals += n
             continue
         own, physical = packed.masses[p, moving : moving + n * n].reshape(n, n), np.empty((n, _WIDTH))
-        _copy(shapes[b, :n], physical)
+        copy(shapes[b, :n], physical)
         moving += n * n
         for j in range(n - 1, -1, -1):
             for i in range(j + 1, n):
                 factor = pencils[b, j, i] / d[b, j]
                 for c in range(wide):
                     physical[j, c] -= factor * physical[i, c]
-        _fill(result[b], n, _WIDTH)
+        fill(result[b], n, _WIDTH)
         for i in range(n):
             for j in range(n):
                 factor = own[i, j]
@@ -268,8 +191,8 @@ def _assembled(
     """
     r = uint(len(mass))
     size = uint(len(a)) - r
-    _copy(packed.constant, a)
-    _copy(packed.mass, mass)
+    copy(packed.constant, a)
+    copy(packed.mass, mass)
     for e in range(len(packed.entries)):
         a[packed.entries[e, 0], packed.entries[e, 1]] += packed.values[p, e]
     number, fine = packed.below, True
@@ -282,10 +205,10 @@ def _assembled(
         readings += n * k
         if follows:
             own = packed.masses[p, moving : moving + n * n].reshape(n, n)
-            _copy(packed.pencils[p, moving : moving + n * n].reshape(n, n), pencils[b])
+            copy(packed.pencils[p, moving : moving + n * n].reshape(n, n), pencils[b])
             shape = packed.shapes[shapes : shapes + n * len(mass)].reshape(n, len(mass))
             _beside(own, shape, forces, x[b], mass)
-            negative, certain = _eliminated(pencils[b], x[b], n, width, scale)
+            negative, certain = eliminated(pencils[b], x[b], n, width, scale)
             number, fine = number + negative, fine and certain
             for i in range(n):
                 d[b, i] = pencils[b, i, i]
@@ -301,10 +224,10 @@ def _assembled(
             loads += n * len(mass)
             diagonals += n
         last = width if follows else k
-        _fill(added, last, width)
+        fill(added, last, width)
         for i in range(n):
             scale[i] = 1.0 / d[b, i]
-        _products(x[b], scale, n, 0, last, width, added)
+        products(x[b], scale, n, 0, last, width, added)
         for i in range(k):
             row = packed.rows[rows + i]
             for j in range(i, k):
@@ -353,40 +276,6 @@ def _turned(root: FloatArray, forces: FloatArray, load: FloatArray, x: FloatArra
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
-def _products(x: FloatArray, w: FloatArray, n: int, first: int, last: int, width: int, result: FloatArray) -> None:
-    """Adds x^T diag(w) x to rows first .. last of an upper triangle, from four rows of x at a time."""
-    for i in range(first, last):
-        for j in range(0, n - n % 4, 4):
-            f, g, h, e = w[j] * x[j, i], w[j + 1] * x[j + 1, i], w[j + 2] * x[j + 2, i], w[j + 3] * x[j + 3, i]
-            for c in range(uint(i), uint(width)):
-                result[i, c] += f * x[j, c] + g * x[j + 1, c] + h * x[j + 2, c] + e * x[j + 3, c]
-        for j in range(n - n % 4, n):
-            f = w[j] * x[j, i]
-            for c in range(uint(i), uint(width)):
-                result[i, c] += f * x[j, c]
-
-
-@numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
-def _eliminated(a: FloatArray, x: FloatArray, n: int, width: int, scale: FloatArray) -> tuple[int, bool]:
-    """L D L^T of the upper triangle of a (n, n), L^-1 x; how many pivots are negative, and whether that is sure."""
-    negative, sure = 0, True
-    for i in range(n):
-        scale[i] = abs(a[i, i])
-    for j in range(n):
-        pivot = a[j, j]
-        negative += pivot < 0.0
-        sure = sure and abs(pivot) > _PIVOT * scale[j]
-        for i in range(j + 1, n):
-            factor = a[j, i] / pivot
-            scale[i] += abs(factor * a[j, i])
-            for c in range(uint(i), uint(n)):
-                a[i, c] -= factor * a[j, c]
-            for c in range(uint(0), uint(width)):
-                x[i, c] -= factor * x[j, c]
-    return negative, sure
-
-
-@numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
 def _condensed(packed: Any, a: FloatArray, scale: FloatArray) -> tuple[int, bool]:
     """The same of S, which leaves A in the last rows: as told by the fill."""
     whole = len(a)
@@ -397,7 +286,7 @@ def _condensed(packed: Any, a: FloatArray, scale: FloatArray) -> tuple[int, bool
     for j in range(size):
         pivot, columns = a[j, j], packed.columns[packed.starts[j] : packed.starts[j + 1]]
         negative += pivot < 0.0
-        sure = sure and abs(pivot) > _PIVOT * scale[j]
+        sure = sure and abs(pivot) > PIVOT * scale[j]
         last = columns[-1] + 1 if len(columns) else j
         for i in columns:
             factor = a[j, i] / pivot
@@ -407,5 +296,5 @@ def _condensed(packed: Any, a: FloatArray, scale: FloatArray) -> tuple[int, bool
             for c in range(uint(size), uint(whole)):
                 a[i, c] -= factor * a[j, c]
         scale[j] = -1.0 / pivot
-    _products(a, scale, size, size, whole, whole, a)
+    products(a, scale, size, size, whole, whole, a)
     return negative, sure
