@@ -29,7 +29,7 @@ _DOES_NOT_SERVE = (PrsError, np.linalg.LinAlgError)  # solving pose by pose will
 
 _FEWEST = 400  # poses that are worth an interpolation
 _WORTH_BASIS = 2000  # poses that are worth a basis for all of them
-_PAYS, _PAYS_BESIDE_A_BASIS = 2.0, 20.0  # poses for each node of an interpolation, at least
+_PAYS, _PAYS_BESIDE_A_BASIS, _PAYS_ON_A_LIST = 2.0, 4.0, 20.0  # poses for each node of an interpolation, at least
 
 
 def planned(machine: Machine, poses: Poses, request: Request, pool: ThreadPoolExecutor) -> tuple[Found | None, str]:
@@ -42,7 +42,9 @@ def planned(machine: Machine, poses: Poses, request: Request, pool: ThreadPoolEx
         return None, f"{poses.size} poses are solved one by one"
     if not is_possible(request, machine.description.file.damping):
         return None, "resonance peaks under damping of joints"
-    solver, pays = _solver(machine, request), _PAYS_BESIDE_A_BASIS if _worth_a_basis(poses, request) else _PAYS
+    solver, pays = _solver(machine, request), _PAYS
+    if _worth_a_basis(poses, request):
+        pays = _PAYS_BESIDE_A_BASIS if poses.is_grid else _PAYS_ON_A_LIST
     try:
         return interpolated(machine, poses, request, solver, pool, poses.size / pays)
     except _DOES_NOT_SERVE as error:
