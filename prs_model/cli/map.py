@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from time import perf_counter
 from typing import Any
@@ -21,6 +22,13 @@ from .values import assignment, dimension_of, positive
 
 NAME = "map"
 HELP = "natural frequencies, compliance and tracked modes over the workspace, each frequency with a bound"
+
+_PROVED = {
+    "poses_interpolated": "interpolated, their bounds estimated, no mode missing by a count (proof 1)",
+    "poses_solved": "solved in full (proof 2)",
+    "poses_bounded": "enclosed from both sides, no mode missing by a count (proof 3)",
+    "poses_unreachable": "out of reach",
+}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -77,14 +85,12 @@ def run(options: argparse.Namespace) -> dict[str, Any]:
     request = Request(options.count, ("frequency", *options.quantity), options.tolerance, band)
     for file in options.output:
         check_file(file)
-        if file.suffix.lower() in PICTURES:
-            check_drawing(options.draw)
     machine = machine_argument.changed(options)
     poses = _poses(machine, options)
+    if any(file.suffix.lower() in PICTURES for file in options.output):
+        check_drawing(options.draw, request.quantities, poses.size)
     start = perf_counter()
     with bar(quiet=options.quiet, unit="poses") as progress:
-        if progress is not None:
-            progress(0, poses.size)
         data = sweep(machine, poses, request, progress, options.store, options.cluster)
     seconds = perf_counter() - start
     for file in options.output:
@@ -103,9 +109,23 @@ def show(outcome: dict[str, Any]) -> str:
     rate = outcome["poses"] / max(outcome["seconds"], 1e-9)
     title = f"{outcome['machine']}: {outcome['poses']:,} poses in {outcome['seconds']:.2f} s ({rate:,.0f} a second)"
     lines = [title, "", table(rows) if outcome["modes"] else "no pose is reachable"]
-    lines += [f"{each['poses']:,} poses: {each['reason']}" for each in outcome["unreachable"]]
-    lines += ["", *(f"{name.replace('_', ' ')}: {value}" for name, value in outcome["certificate"].items())]
+    lines += [f"{_poses_in_words(each['poses'])}: {each['reason']}" for each in outcome["unreachable"]]
+    lines += ["", *_certificate(outcome["certificate"])]
     return "\n".join([*lines, *(f"written to {file}" for file in outcome["files"])])
+
+
+def _certificate(certificate: Mapping[str, Any]) -> Iterator[str]:
+    """In the words of the table of `proof` in docs/maps.md."""
+    yield f"how: {certificate['how']}"
+    for name, words in _PROVED.items():
+        if certificate[name]:
+            yield f"{_poses_in_words(certificate[name])} {words}"
+    if "relative_error_bound" in certificate:
+        yield f"largest bound of a relative error: {certificate['relative_error_bound']:.2g}"
+
+
+def _poses_in_words(count: int) -> str:
+    return f"{count:,} {'pose' if count == 1 else 'poses'}"
 
 
 def _poses(machine: Machine, options: argparse.Namespace) -> Poses:

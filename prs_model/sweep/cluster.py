@@ -7,6 +7,7 @@ threads are under way at any time, so that memory does not grow with the number 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from itertools import islice
@@ -25,6 +26,8 @@ except ImportError as error:
     raise MissingExtraError("distributed", "cluster", "a sweep on a cluster") from error
 
 PATIENCE = 60.0  # s without any worker
+
+_ADDRESS = re.compile(r"[a-z]+://\S+|[^\s:/]+:\d+")
 
 
 class Plan(Protocol):
@@ -84,6 +87,8 @@ def _client(cluster: Client | str | Any) -> Iterator[Client]:
     if not isinstance(cluster, str) and not hasattr(cluster, "scheduler_address"):
         expected = "expected a client or cluster of Dask, or the address of its scheduler such as tcp://host:8786"
         raise PrsError(f"cluster: found {cluster!r:.60}, {expected}")
+    if isinstance(cluster, str) and not _ADDRESS.fullmatch(cluster):
+        raise PrsError(f"cluster: found '{cluster}', expected the address of a Dask scheduler such as tcp://host:8786")
     try:
         client = Client(cluster, set_as_default=False)
     except (OSError, ValueError) as error:

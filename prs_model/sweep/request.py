@@ -44,7 +44,7 @@ class Request:
         if not isinstance(self.n_modes, Integral) or isinstance(self.n_modes, bool) or self.n_modes < 1:
             raise PrsError(f"n_modes: found {self.n_modes!r}, expected a whole number above zero")
         low, high = _TOLERANCES
-        if not _is_number(self.tolerance) or not low < self.tolerance < high:
+        if not _is_number(self.tolerance) or not low <= self.tolerance <= high:
             raise PrsError(f"tolerance: found {self.tolerance!r}, expected a number between {low:g} and {high:g}")
         object.__setattr__(self, "n_modes", int(self.n_modes))
         object.__setattr__(self, "tolerance", float(self.tolerance))

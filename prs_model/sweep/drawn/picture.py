@@ -6,9 +6,11 @@ one makes curves; more make the map of the first two at the middle of the others
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from math import ceil
 from pathlib import Path
+from textwrap import fill as fill_text
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -26,6 +28,7 @@ if TYPE_CHECKING:
     import xarray
 
 _READABLE = {"rad": (180.0 / np.pi, "deg"), "m": (1e3, "mm")}
+_WIDTH = 52  # of the lines of a title
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,19 +78,19 @@ def draw(data: xarray.Dataset, path: Path, quantity: str = "frequency") -> None:
     write_figure(figure, path)
 
 
-def check_drawing(quantity: str) -> None:
-    """Raise UnknownNameError, MissingExtraError or PrsError now if it could not be drawn later."""
+def check_drawing(quantity: str, asked: Collection[str], poses: int) -> None:
+    """Raise UnknownNameError, MissingExtraError or PrsError now if a map of what is asked could not be drawn later."""
     if quantity not in DRAWABLE:
         raise UnknownNameError("quantity to draw", quantity, list(DRAWABLE))
+    if DRAWABLE[quantity] not in asked:
+        raise PrsError(f"picture: the map has no {quantity}; ask for the quantity {DRAWABLE[quantity]}")
+    if poses < 2:
+        raise PrsError("picture: found one pose, expected several; prs-model modes --picture draws the shapes at one")
     matplotlib_figure("drawing a map")
 
 
 def _check(data: xarray.Dataset, quantity: str) -> None:
-    check_drawing(quantity)
-    if quantity not in data:
-        raise PrsError(f"picture: the map has no {quantity}; ask for the quantity {DRAWABLE[quantity]}")
-    if not data["reason"].dims:
-        raise PrsError("picture: found one pose, expected several; prs-model modes --picture draws the shapes at one")
+    check_drawing(quantity, data.attrs["quantities"].split(), data["reason"].size)
     if not np.isfinite(data[quantity].values).any():
         raise PrsError(f"picture: no pose has a value of {quantity}: all are unreachable, or the machine is not held")
 
@@ -109,7 +112,7 @@ def _worst_in_words(data: xarray.Dataset, panel: Panel) -> str:
     there = data.isel(place)
     varying = [each for name, each in there.coords.items() if data[name].dims and "pose" not in each.dims]
     where = ", ".join(_value(each) for each in varying if each.attrs.get("units") in _READABLE)
-    return f"\n{'largest' if panel.worst > 0 else 'lowest'} {panel.value_text()}\nat {where}"
+    return f"\n{'largest' if panel.worst > 0 else 'lowest'} {panel.value_text()}\n{fill_text(f'at {where}', _WIDTH)}"
 
 
 def _polar(figure: Any, axes: Any, data: xarray.Dataset, panel: Panel) -> None:
@@ -181,7 +184,13 @@ def _subtitle(data: xarray.Dataset, quantity: str) -> str:
     what = str(data[quantity].attrs.get("long_name", quantity))
     if quantity.startswith("frf"):
         what += f" of {data.attrs['band_low_hz']:g} .. {data.attrs['band_high_hz']:g} Hz"
-    missing = "crosses" if data["reason"].dims == ("pose",) else "hatching"
+    missing = "hatching"
+    if data["reason"].dims == ("pose",):
+        missing = "crosses"
+        over = [
+            name for name in map(str, data.coords) if data[name].dims == ("pose",) and np.ptp(data[name].values) > 0.0
+        ]
+        fixed += [f"poses of any {', '.join(over[2:])}"] if over[2:] else []
     return ", ".join([what, *fixed]) + (f"; {missing}: out of reach" if data["reason"].values.any() else "")
 
 

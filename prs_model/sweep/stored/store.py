@@ -196,7 +196,7 @@ def opened(folder: str | Path, run: str, shape: tuple[int, ...]) -> Iterator[Sto
     Raises PrsError for a folder of another run, one with other files in it, one in use, one that cannot be written, or
     one without a name.
     """
-    if not str(folder).strip():
+    if not isinstance(folder, str | Path) or not str(folder).strip():
         raise PrsError(f"store: found '{folder}', expected the name of a folder")
     folder = Path(folder)
     with ExitStack() as held:
