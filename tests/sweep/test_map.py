@@ -129,7 +129,7 @@ def test_the_worst_of_poses_that_are_alike_is_the_first():
 def test_an_address_without_a_scheduler_is_told(capsys):
     pytest.importorskip("distributed")
     assert main(["map", "hexapod", *GRID, "-n", "2", "--cluster", "udp:nowhere"]) == 1
-    assert "cluster: no scheduler of Dask answers at 'udp:nowhere'" in capsys.readouterr().err
+    assert "cluster: found 'udp:nowhere', expected the address of a Dask scheduler" in capsys.readouterr().err
 
 
 def test_a_grid_may_go_backwards(capsys):
