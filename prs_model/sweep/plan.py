@@ -1,4 +1,4 @@
-"""How the poses of a sweep are worked out: by interpolation where it is proved good enough, else one by one."""
+"""The poses of a sweep worked out, as was planned: by interpolation, in a basis, or in full."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ import numpy as np
 from ...arrays import FloatArray, IntArray
 from ...linear_algebra import slowest_rate
 from ...synthesis.redundancy import without_redundant
-from ..exact import Solved, Solver
+from ..exact import Solved, Solver, eigenvalues_of
 from ..not_smooth import NotSmoothError
 from ..poses import Poses
 from ..request import Request
@@ -78,7 +78,7 @@ def _first_snapshots(
     solver = replace(solver, count=request.n_modes + _FOLLOWED)
     while True:
         snapshots = _solved(solver, poses, pool)
-        values = _eigenvalues(snapshots)
+        values = eigenvalues_of(snapshots)
         if values.shape[1] < request.n_modes:
             raise NotSmoothError(f"only {values.shape[1]} modes")
         if values.shape[1] < solver.count or values[:, -1].min() > _level(request, values):
@@ -88,11 +88,6 @@ def _first_snapshots(
 
 def _level(request: Request, values: FloatArray) -> float:
     return _ABOVE * float(values[:, request.n_modes - 1].max())
-
-
-def _eigenvalues(snapshots: list[Solved]) -> FloatArray:
-    fewest = min(each.modes.eigenvalues.shape[1] for each in snapshots)
-    return np.concatenate([each.modes.eigenvalues[:, :fewest] for each in snapshots])
 
 
 def _rates(solved: Solved) -> FloatArray:
@@ -109,7 +104,7 @@ def _check_held(request: Request, snapshots: list[Solved]) -> None:
 def _check_rounding(request: Request, found: RitzAtPoses, snapshots: list[Solved]) -> None:
     """Raises NotSmoothError where rounding alone is too much, as it is for frequencies far below others."""
     if found.rounding.max() > request.tolerance:
-        low, high = np.sqrt(np.abs(_eigenvalues(snapshots)[0, [0, request.n_modes - 1]])) / (2.0 * np.pi)
+        low, high = np.sqrt(np.abs(eigenvalues_of(snapshots)[0, [0, request.n_modes - 1]])) / (2.0 * np.pi)
         off = f"rounding of {found.rounding.max():.1e} in one basis for all poses"
         raise NotSmoothError(f"{off}, with frequencies from {low:.3g} to {high:.3g} Hz")
 
@@ -124,7 +119,7 @@ def _check_regular(found: RitzAtPoses, solver: Solver, poses: FloatArray, kernel
 
 def _basis(request: Request, solver: Solver, snapshots: list[Solved]) -> RitzAtPoses:
     """The largest, from the modes below the level; the first of its shapes are a smaller one."""
-    values = _eigenvalues(snapshots)
+    values = eigenvalues_of(snapshots)
     level = _level(request, values)
     shapes = np.concatenate([each.modes.shapes[:, :, : values.shape[1]] for each in snapshots])
     columns = shapes.swapaxes(1, 2)[values < level].T
